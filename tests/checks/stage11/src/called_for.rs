@@ -49,6 +49,11 @@ fn scene(shapes: &[(Shape, Material)]) -> Scene {
     scene
 }
 
+/// The same under a light.
+fn lit_scene(color: Vec3, shapes: &[(Shape, Material)]) -> Scene {
+    Scene { lights: vec![light(color)], ..scene(shapes) }
+}
+
 /// The materials that diffuse rays leave, those that are sampled, and whether the environment map is.
 type Needs = (&'static [usize], &'static [usize], bool);
 
@@ -206,20 +211,15 @@ pub(super) fn every_source_of_light_calls_for_paths(trial: &Trial<'_>) -> CheckR
     let with = |background: Background| Scene { background, ..scene(&[wall()]) };
     let gradient = |zenith, horizon, nadir| Background::Gradient(Gradient { zenith, horizon, nadir });
     let map = |scale| Background::Map(EnvironmentMap { texture: 0, rotation: 0.0, scale });
-    let mut lit = scene(&[wall()]);
-    lit.lights.push(light(RED));
+    let lit = lit_scene(RED, &[wall()]);
     let (zero, one) = (Vec3::ZERO, Vec3::ONE);
     const WITH_MAP: Needs = (&[1], &[], true);
     const LIGHTS: &str = "lights of the scene are light, too";
     const BACKGROUND: (Needs, &str) = (NOTHING, "the background is light, too");
-    let mut dark_map = with(map(0.0));
-    dark_map.lights.push(light(one));
+    let dark_map = Scene { background: map(0.0), ..lit_scene(one, &[wall()]) };
     let sky = |what, background| case(what, with(background), WALL, &[BACKGROUND]);
-    let mut mirror = scene(&[wall(), (sphere(), Material { mirror: one, ..diffuse(zero) })]);
-    mirror.lights.push(light(one));
-    let mut glass =
-        scene(&[(sphere(), Material { transmission: one, specular: one, ..diffuse(zero) }), wall()]);
-    glass.lights.push(light(one));
+    let mirror = (sphere(), Material { mirror: one, ..diffuse(zero) });
+    let glass = (sphere(), Material { transmission: one, specular: one, ..diffuse(zero) });
     let cases = vec![
         case("a diffuse sphere under a red light", lit, WALL, &[(NOTHING, LIGHTS)]),
         sky("a diffuse sphere under a grey sky", Background::Color(0.1 * one)),
@@ -256,13 +256,13 @@ pub(super) fn every_source_of_light_calls_for_paths(trial: &Trial<'_>) -> CheckR
         ),
         case(
             "a diffuse sphere and a mirror under a light",
-            mirror,
+            lit_scene(one, &[wall(), mirror]),
             WALL,
             &[((&[1, 2], &[], false), "a mirror sends no diffuse rays"), (NOTHING, LIGHTS)],
         ),
         case(
             "a glass sphere with a highlight, and a diffuse one",
-            glass,
+            lit_scene(one, &[glass, wall()]),
             (&[2], &[], false),
             &[((&[1, 2], &[], false), "glass and highlights send no diffuse rays"), (NOTHING, LIGHTS)],
         ),
@@ -282,8 +282,7 @@ pub(super) fn paths_are_called_for_channel_by_channel(trial: &Trial<'_>) -> Chec
     const CHANNELS: &str = "compare channel by channel: a red light adds nothing to a green wall";
     let wall = |color| (sphere(), diffuse(color));
     let emitter = |color| (sphere(), glowing(color));
-    let mut red_light = scene(&[wall(GREEN), wall(RED)]);
-    red_light.lights.push(light(RED));
+    let red_light = lit_scene(RED, &[wall(GREEN), wall(RED)]);
     let map = Background::Map(EnvironmentMap { texture: 0, rotation: 0.0, scale: 1.0 });
     let black = Scene { background: map, ..scene(&[wall(Vec3::ZERO)]) };
     let two = scene(&[wall(RED), emitter(GREEN), emitter(RED)]);

@@ -254,19 +254,18 @@ pub(super) fn lambert(corners: &[DVec3], normal: DVec3) -> f64 {
 }
 
 /// The nodes and weights of the Gauss–Legendre rule with three points on `0..1`.
-pub(super) const GAUSS: [(f64, f64); 3] =
+const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
-/// Nodes of a product rule for the unit square, `GAUSS` in each of 8 by 8 cells: the place and the weight, cell by cell.
-pub(super) fn nodes() -> Vec<((f64, f64), f64)> {
-    let cells = f64::from(checks::statistics::CELLS);
+/// The number of nodes of [`nodes`] per cell.
+pub(super) const NODES_PER_CELL: usize = GAUSS.len() * GAUSS.len();
+
+/// Nodes of a product rule, `GAUSS` along both sides of each cell, which has a corner and a size: the place and the weight.
+pub(super) fn nodes(cells: impl Iterator<Item = ((f64, f64), (f64, f64))>) -> Vec<((f64, f64), f64)> {
     let mut nodes = Vec::new();
-    for cell in 0..(cells * cells) as u32 {
-        let (column, row) = (f64::from(cell) % cells, (f64::from(cell) / cells).floor());
-        for (s, first) in GAUSS {
-            for (t, second) in GAUSS {
-                nodes.push((((column + s) / cells, (row + t) / cells), first * second / (cells * cells)));
-            }
+    for ((x, y), (width, height)) in cells {
+        for ((s, first), (t, second)) in GAUSS.into_iter().flat_map(|s| GAUSS.map(|t| (s, t))) {
+            nodes.push(((x + s * width, y + t * height), first * second * width * height));
         }
     }
     nodes

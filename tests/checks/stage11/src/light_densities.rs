@@ -1,6 +1,6 @@
 //! Checks of `light_pdf`, and of the samples of emitters by their density.
 
-use crate::emitters::{GAUSS, KINDS, Layout, Lit, layouts, nodes};
+use crate::emitters::{KINDS, Layout, Lit, NODES_PER_CELL, layouts, nodes};
 use crate::lights::{bright, judge_sample, missing, of};
 use checks::prelude::*;
 use checks::statistics::{CELLS, bins, covers_each_part, is_other_power};
@@ -30,18 +30,13 @@ pub(super) fn seen_well(trial: &Trial<'_>) -> [Lit; 3] {
 
 /// The solid angle of each bin of the unit square times the student's density, by a product rule.
 fn shares_of_bins(trial: &Trial<'_>, lit: &Lit) -> Vec<f64> {
-    let mut nodes = Vec::new();
-    for ((x, y), (width, height)) in bins() {
-        for ((s, first), (t, second)) in GAUSS.into_iter().flat_map(|s| GAUSS.map(|t| (s, t))) {
-            nodes.push(((x + s * width, y + t * height), first * second * width * height));
-        }
-    }
+    let nodes = nodes(bins());
     let queries: Vec<EmitterPdfQuery> = nodes.iter().map(|(place, _)| lit.pdf(lit.toward(*place))).collect();
     let density = |((place, weight), density): (&((f64, f64), f64), f32)| {
         weight * lit.solid_angle(*place) * f64::from(density)
     };
     let parts: Vec<f64> = nodes.iter().zip(trial.kit.light_pdf(&queries)).map(density).collect();
-    parts.chunks(GAUSS.len() * GAUSS.len()).map(|bin| bin.iter().sum()).collect()
+    parts.chunks(NODES_PER_CELL).map(|bin| bin.iter().sum()).collect()
 }
 
 pub(super) fn light_samples_have_their_density(trial: &Trial<'_>) -> CheckResult {
@@ -134,7 +129,9 @@ pub(super) fn light_samples_have_their_density(trial: &Trial<'_>) -> CheckResult
 
 /// Judges that the density of each emitter integrates to 1.
 fn integrates_to_one(trial: &Trial<'_>, lits: &[Lit]) -> Vec<CheckResult> {
-    let nodes = nodes();
+    let side = f64::from(CELLS);
+    let corner = |cell: u32| (f64::from(cell % CELLS) / side, f64::from(cell / CELLS) / side);
+    let nodes = nodes((0..CELLS * CELLS).map(|cell| (corner(cell), (1.0 / side, 1.0 / side))));
     let queries: Vec<EmitterPdfQuery> =
         lits.iter().flat_map(|lit| nodes.iter().map(|(place, _)| lit.pdf(lit.toward(*place)))).collect();
     let densities = trial.kit.light_pdf(&queries);
@@ -156,8 +153,7 @@ fn integrates_to_one(trial: &Trial<'_>, lits: &[Lit]) -> Vec<CheckResult> {
         }
         let is_one = |x: f64| (x - 1.0).abs() <= 1e-3;
         let flat = lit.area().is_some();
-        let first = EmitterPdfQuery { direction: lit.pdf(lit.toward((0.5, 0.5))).direction, ..queries[0] };
-        let first = EmitterPdfQuery { emitter: lit.emitter, from: lit.from, ..first };
+        let first = lit.pdf(lit.toward((0.5, 0.5)));
         let input =
             format!("{}\nand {} other directions to the emitter", first.call("light_pdf"), nodes.len() - 1);
         let yours = format!("the integral over the directions is {integral:.5}");
@@ -207,11 +203,7 @@ pub(super) fn far_sphere_lights_keep_their_density(trial: &Trial<'_>) -> CheckRe
         let u = |n: i32| (n as f32 + 0.5) / 16.0;
         let queries: Vec<EmitterQuery> =
             cases.iter().map(|(lit, a, b)| lit.sample(vec2(u(*a), u(*b)))).collect();
-        let samples = trial.kit.sample_light(&queries);
-        let directions: Vec<EmitterPdfQuery> =
-            queries.iter().zip(&samples).map(|(query, sample)| of_direction(query, sample)).collect();
-        let densities = trial.kit.light_pdf(&directions);
-        let judge = |((query, sample), density): ((&EmitterQuery, &Option<EmitterSample>), f32)| {
+        compare(&queries, with_densities(trial, &queries), |query, (sample, density)| {
             let Some(sample) = sample else { return Err(missing(query)) };
             // Rounding moves the direction by up to 1e-4 of the cone's radius. Uniform points of the area have a density
             // that grows towards the rim, by a tenth over this distance at the outermost of these samples.
@@ -219,8 +211,7 @@ pub(super) fn far_sphere_lights_keep_their_density(trial: &Trial<'_>) -> CheckRe
                 return Ok(());
             }
             Err(Broken::new(query.call("sample_light"), sample.pdf, density, "your light_pdf"))
-        };
-        queries.iter().zip(&samples).zip(densities).map(judge).collect()
+        })
     })
 }
 
@@ -240,9 +231,17 @@ impl Lit {
 }
 
 /// Asks for the density of the direction of `sample`.
-fn of_direction(query: &EmitterQuery, sample: &Option<EmitterSample>) -> EmitterPdfQuery {
+fn of_direction(query: &EmitterQuery, sample: Option<EmitterSample>) -> EmitterPdfQuery {
     let direction = sample.map_or(Vec3::X, |sample| sample.direction);
     EmitterPdfQuery { emitter: query.emitter, from: query.from, direction }
+}
+
+/// The student's samples, each with the student's density of its direction.
+fn with_densities(trial: &Trial<'_>, queries: &[EmitterQuery]) -> Vec<(Option<EmitterSample>, f32)> {
+    let samples = trial.kit.sample_light(queries);
+    let directions: Vec<EmitterPdfQuery> =
+        queries.iter().zip(&samples).map(|(query, sample)| of_direction(query, *sample)).collect();
+    samples.into_iter().zip(trial.kit.light_pdf(&directions)).collect()
 }
 
 pub(super) fn light_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
@@ -251,16 +250,9 @@ pub(super) fn light_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult 
     let inner = |shift: f32| (1..15i32).prop_map(move |n| (n as f32 + shift) / 16.0);
     let queries = (bright(), inner(0.3), inner(0.45)).prop_map(|(lit, x, y)| lit.sample(vec2(x, y)));
     trial.forall(500, queries, |queries| {
-        let samples = trial.kit.sample_light(queries);
-        let directions: Vec<EmitterPdfQuery> =
-            queries.iter().zip(&samples).map(|(query, sample)| of_direction(query, sample)).collect();
-        let densities = trial.kit.light_pdf(&directions);
-        let judge = |((query, sample), (direction, density)): (
-            (&EmitterQuery, &Option<EmitterSample>),
-            (&EmitterPdfQuery, f32),
-        )| {
+        compare(queries, with_densities(trial, queries), |query, (sample, density)| {
             let Some(sample) = sample else { return Err(missing(query)) };
-            judge_sample(query, sample)?;
+            judge_sample(query, &sample)?;
             let ratio = f64::from(density) / f64::from(sample.pdf);
             // The rounding of the direction moves the hit by up to 1e-5 of the distance, and the density with it.
             if (ratio - 1.0).abs() <= 1e-3 {
@@ -271,8 +263,8 @@ pub(super) fn light_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult 
             let squared = f64::from(sample.distance).powi(2);
             let is_off = |ratio: f64| (squared - 1.0).abs() > 1e-2 && (ratio * squared - 1.0).abs() < 1e-3;
             let own_is_area = area.is_some_and(|area| (f64::from(sample.pdf) * area - 1.0).abs() < 1e-3);
-            let input =
-                format!("{}\nand the pdf of {}", direction.call("light_pdf"), query.call("sample_light"));
+            let of_pdf = of_direction(query, Some(sample)).call("light_pdf");
+            let input = format!("{of_pdf}\nand the pdf of {}", query.call("sample_light"));
             Err(Broken::new(input, density, sample.pdf, "your sample_light").explained_by([
                 (density == 0.0, "your light_pdf is 0 for a direction that sample_light returns"),
                 (is_area, "your light_pdf is per area, and the pdf of your sample is per steradian"),
@@ -281,8 +273,7 @@ pub(super) fn light_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult 
                 "your two densities differ by the square of the distance: both are r² / (cos θ A)"
                     .when(area.is_some() && (is_off(ratio) || is_off(1.0 / ratio))),
             ]))
-        };
-        queries.iter().zip(&samples).zip(directions.iter().zip(densities)).map(judge).collect()
+        })
     })
 }
 
@@ -315,15 +306,13 @@ pub(super) fn light_pdf_beside_the_light_is_zero(trial: &Trial<'_>) -> CheckResu
     trial.forall(500, cases, |cases| {
         let queries: Vec<EmitterPdfQuery> =
             cases.iter().map(|(lit, direction, _)| lit.pdf(*direction)).collect();
-        let answers = trial.kit.light_pdf(&queries);
-        let judge = |((_, _, meets), (query, yours)): (&(Lit, DVec3, bool), (&EmitterPdfQuery, f32))| {
+        compare(cases, trial.kit.light_pdf(&queries), |(lit, direction, meets), yours| {
             if if *meets { yours > 0.0 } else { yours == 0.0 } {
                 return Ok(());
             }
             let expected = if *meets { "above 0" } else { "0.0: this direction misses the emitter" };
-            let reversed = EmitterPdfQuery { direction: -query.direction, ..*query };
-            let lit = Lit { emitter: query.emitter, from: query.from };
-            let away = !*meets && lit.outside(reversed.direction.as_dvec3()) < 0.0;
+            let query = lit.pdf(*direction);
+            let away = !*meets && lit.outside(-query.direction.as_dvec3()) < 0.0;
             let broken =
                 Broken::with_texts(query.call("light_pdf"), format!("{yours:?}"), expected, "the definition");
             Err(broken.explained_by([
@@ -334,7 +323,6 @@ pub(super) fn light_pdf_beside_the_light_is_zero(trial: &Trial<'_>) -> CheckResu
                 ),
                 (yours.is_nan(), "you return NaN"),
             ]))
-        };
-        cases.iter().zip(queries.iter().zip(answers)).map(judge).collect()
+        })
     })
 }

@@ -128,11 +128,7 @@ fn dark() -> impl Strategy<Value = (Lit, bool)> + Clone {
             from[axis] = corner[axis];
             let shape = match kind {
                 0 => EmitterShape::Parallelogram { corner, edges: (2.0 * x, y) },
-                _ => EmitterShape::Triangle(raykata::shape::Triangle {
-                    a: corner,
-                    b: corner + x,
-                    c: corner + y,
-                }),
+                _ => EmitterShape::Triangle(Triangle { a: corner, b: corner + x, c: corner + y }),
             };
             let emitter = raykata::emitter::AreaEmitter { shape, radiance: Vec3::ONE, two_sided };
             (Lit { emitter, from }, true)
@@ -140,13 +136,10 @@ fn dark() -> impl Strategy<Value = (Lit, bool)> + Clone {
     );
     let turned = (layouts(), 0..4i32).prop_map(|(layout, which)| {
         let mut layout = layout;
-        match which {
-            // A one-sided emitter from behind or from inside, and a black one.
-            0 | 1 => {
-                layout.two_sided = which == 1 && layout.kind != 2;
-                layout.place.z = if layout.kind == 2 { -0.5 } else { -layout.place.z };
-            }
-            _ => {}
+        // A one-sided emitter from behind or from inside, and a black one.
+        if which < 2 {
+            layout.two_sided = which == 1 && layout.kind != 2;
+            layout.place.z = if layout.kind == 2 { -0.5 } else { -layout.place.z };
         }
         let mut lit = layout.lit();
         if which == 2 {
@@ -157,30 +150,22 @@ fn dark() -> impl Strategy<Value = (Lit, bool)> + Clone {
     prop_oneof![1 => in_plane, 4 => turned]
 }
 
-/// An emitter with whether it is dark, and what was asked about it.
-type Asked<'a> = (&'a (Lit, bool), (&'a EmitterQuery, &'a EmitterPdfQuery));
-
 pub(super) fn dark_sides_send_no_light(trial: &Trial<'_>) -> CheckResult {
     trial.forall(500, (dark(), numbers()), |cases| {
         let queries: Vec<EmitterQuery> = cases.iter().map(|((lit, _), u)| lit.sample(*u)).collect();
-        // A direction to the middle of the emitter.
-        let pdfs: Vec<EmitterPdfQuery> = cases
-            .iter()
-            .map(|((lit, _), _)| lit.pdf(lit.toward((0.45, 0.4)).try_normalize().unwrap_or(DVec3::Y)))
-            .collect();
+        // The density of a direction to the middle of the emitter.
+        let middle = |lit: &Lit| lit.pdf(lit.toward((0.45, 0.4)).try_normalize().unwrap_or(DVec3::Y));
+        let pdfs: Vec<EmitterPdfQuery> = cases.iter().map(|((lit, _), _)| middle(lit)).collect();
         let densities = trial.kit.light_pdf(&pdfs);
-        let answers = trial.kit.sample_light(&queries).into_iter().zip(densities);
-        let judge = |(((lit, is_dark), (query, pdf)), (yours, density)): (
-            Asked<'_>,
-            (Option<EmitterSample>, f32),
-        )| {
+        let answers = trial.kit.sample_light(&queries).into_iter().zip(densities).collect();
+        compare(cases, answers, |((lit, is_dark), u), (yours, density): (Option<EmitterSample>, f32)| {
             let (radiance, source) = (lit.emitter.radiance, "the definition");
             let black = radiance == Vec3::ZERO;
             let inside = matches!(lit.emitter.shape, EmitterShape::Sphere(_));
             if yours.is_some() == *is_dark {
                 let expected = if *is_dark { "None" } else { "a sample" };
-                let broken =
-                    Broken::with_texts(query.call("sample_light"), format!("{yours:?}"), expected, source);
+                let input = lit.sample(*u).call("sample_light");
+                let broken = Broken::with_texts(input, format!("{yours:?}"), expected, source);
                 return Err(broken.explained_by(named![
                     *is_dark && black => "an emitter of radiance 0 sends no light: return None",
                     *is_dark && !black && !inside && !lit.is_behind() =>
@@ -199,16 +184,14 @@ pub(super) fn dark_sides_send_no_light(trial: &Trial<'_>) -> CheckResult {
                 return Ok(());
             }
             let expected = if *is_dark { "0.0" } else { "above 0" };
-            Err(Broken::with_texts(pdf.call("light_pdf"), format!("{density:?}"), expected, source)
+            Err(Broken::with_texts(middle(lit).call("light_pdf"), format!("{density:?}"), expected, source)
                 .explained_by([
                     (*is_dark && black, "an emitter of radiance 0 is never sampled: its density is 0"),
                     "the back of an emitter that is not two-sided is never sampled: its density is 0"
                         .when(*is_dark && !black && !lit.emitter.two_sided && density > 0.0),
                     (density.is_nan(), "you return NaN"),
                 ]))
-        };
-        let cases = cases.iter().map(|(case, _)| case);
-        cases.zip(queries.iter().zip(&pdfs)).zip(answers).map(judge).collect()
+        })
     })
 }
 

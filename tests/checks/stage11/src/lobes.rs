@@ -41,15 +41,16 @@ fn bsdf_queries() -> impl Strategy<Value = BsdfQuery> + Clone {
         .prop_map(|(scattering, x, y, z)| BsdfQuery { scattering, u: vec3(x, y, z) })
 }
 
+/// The secondary ray of a lobe. A diffuse lobe has none.
+fn ray_of(scattering: &Scattering, lobe: Lobe) -> Option<&SecondaryRay> {
+    scattering.secondary.iter().find(|ray| lobe != Lobe::Diffuse && ray.bounce == lobe.bounce())
+}
+
 /// The reflectance of a lobe.
 fn reflectance_of(scattering: &Scattering, lobe: Lobe) -> Vec3 {
-    let ray = |bounce: Bounce| {
-        scattering.secondary.iter().find(|ray| ray.bounce == bounce).map_or(Vec3::ZERO, |ray| ray.weight)
-    };
     match lobe {
         Lobe::Diffuse => scattering.diffuse,
-        Lobe::Reflection => ray(Bounce::Reflection),
-        Lobe::Transmission => ray(Bounce::Transmission),
+        _ => ray_of(scattering, lobe).map_or(Vec3::ZERO, |ray| ray.weight),
     }
 }
 
@@ -96,11 +97,7 @@ pub(super) fn bsdf_samples_choose_lobes_that_reflect(trial: &Trial<'_>) -> Check
         let reflectance = reflectance_of(scattering, sample.lobe);
         let direction = sample.direction.as_dvec3();
         let is_unit = (direction.length() - 1.0).abs() < 1e-5;
-        let ray = scattering
-            .secondary
-            .iter()
-            .find(|ray| sample.lobe != Lobe::Diffuse && ray.bounce == sample.lobe.bounce());
-        let keeps = match ray {
+        let keeps = match ray_of(scattering, sample.lobe) {
             // A secondary ray keeps its direction, up to a normalization.
             Some(ray) => (direction - ray.direction.as_dvec3()).length() < 1e-6,
             None => direction.dot(scattering.normal.as_dvec3()) >= -1e-6,
@@ -178,12 +175,6 @@ fn layered(trial: &Trial<'_>) -> Scattering {
     surface(normal, vec3(diffuse, 0.2, 0.1), Some(vec3(0.3, mirror, 0.1)), Some(vec3(0.2, 0.1, 0.5)))
 }
 
-fn samples_of(trial: &Trial<'_>, scattering: &Scattering, count: usize) -> Vec<Option<BsdfSample>> {
-    let u = pairs(trial.seed, 2 * count);
-    let query = |u: &[glam::Vec2]| BsdfQuery { scattering: scattering.clone(), u: u[0].extend(u[1].x) };
-    trial.kit.sample_bsdf(&u.chunks(2).map(query).collect::<Vec<_>>())
-}
-
 /// A sample without its direction: the lobe and its weight.
 type Choice = Option<(Lobe, [f32; 3])>;
 
@@ -252,12 +243,11 @@ pub(super) fn bsdf_samples_keep_the_light(trial: &Trial<'_>) -> CheckResult {
 
 pub(super) fn diffuse_samples_use_fresh_numbers(trial: &Trial<'_>) -> CheckResult {
     let scattering = layered(trial);
-    let places: Vec<(f64, f64)> = samples_of(trial, &scattering, 2 * SAMPLES)
-        .into_iter()
-        .flatten()
-        .filter(|sample| sample.lobe == Lobe::Diffuse)
-        .map(|sample| place(scattering.normal, sample.direction))
-        .collect();
+    let u = pairs(trial.seed, 4 * SAMPLES);
+    let query = |u: &[Vec2]| BsdfQuery { scattering: scattering.clone(), u: u[0].extend(u[1].x) };
+    let samples = trial.kit.sample_bsdf(&u.chunks(2).map(query).collect::<Vec<_>>());
+    let diffuse = samples.iter().flatten().filter(|sample| sample.lobe == Lobe::Diffuse);
+    let places: Vec<_> = diffuse.map(|sample| place(scattering.normal, sample.direction)).collect();
     // Each lobe is chosen with a probability of at least a quarter of 1/4.
     if places.len() < 64 * 20 {
         let input = format!("sample_bsdf of {} for {} numbers u", scattering.paste(), 2 * SAMPLES);
@@ -273,8 +263,8 @@ pub(super) fn diffuse_samples_use_fresh_numbers(trial: &Trial<'_>) -> CheckResul
     }
     // Without other lobes every sample is diffuse. A direction depends on two of the three numbers: judge each pair of which it does.
     let scattering = surface(scattering.normal, scattering.diffuse, None, None);
-    let places = |pair: [usize; 2], u: &[glam::Vec2]| {
-        let query = |u: &glam::Vec2| {
+    let places = |pair: [usize; 2], u: &[Vec2]| {
+        let query = |u: &Vec2| {
             let mut numbers = Vec3::splat(0.3);
             (numbers[pair[0]], numbers[pair[1]]) = (u.x, u.y);
             BsdfQuery { scattering: scattering.clone(), u: numbers }
@@ -292,9 +282,8 @@ pub(super) fn diffuse_samples_use_fresh_numbers(trial: &Trial<'_>) -> CheckResul
 }
 
 pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
-    let strategy = (surfaces(), number(), number(), number())
-        .prop_filter("a diffuse surface", |(scattering, ..)| scattering.diffuse != Vec3::ZERO)
-        .prop_map(|(scattering, x, y, z)| BsdfQuery { scattering, u: vec3(x, y, z) });
+    let strategy =
+        bsdf_queries().prop_filter("a diffuse surface", |query| query.scattering.diffuse != Vec3::ZERO);
     trial.forall(800, strategy, |queries| {
         let samples = trial.kit.sample_bsdf(queries);
         // Among hundreds of samples of diffuse surfaces some are diffuse.

@@ -4,7 +4,7 @@
 //! diffuse reflectance kd sends kd E back.
 
 use crate::emitters::lambert;
-use crate::rooms::{Form, Found, Paint, Room, Roulette, Wall, follow};
+use crate::rooms::{Form, Paint, Room, Roulette, Wall, follow};
 use checks::prelude::*;
 use checks::radiosity::EmptyBox;
 use checks::statistics::{Mistakes, SAMPLES, has_mean_within};
@@ -21,14 +21,14 @@ fn grey(share: f64) -> Vec3 {
 /// Checks that a channel of all paths has this mean, which itself is only known up to the second number.
 fn channel_has_mean(
     what: &str,
-    found: &Found,
+    light: &[DVec3],
     channel: usize,
     expected: (f64, f64),
     mistakes: impl Fn(f64) -> Mistakes,
 ) -> CheckResult {
-    let what =
-        format!("{} paths by step in {what}, {}", found.light.len(), ["red", "green", "blue"][channel]);
-    has_mean_within(&what, &found.channel(channel), expected, |mean| {
+    let what = format!("{} paths by step in {what}, {}", light.len(), ["red", "green", "blue"][channel]);
+    let values: Vec<f64> = light.iter().map(|light| light[channel]).collect();
+    has_mean_within(&what, &values, expected, |mean| {
         let mut all = vec![(mean.is_nan(), "a weight, a density or a direction is NaN")];
         all.extend(mistakes(mean));
         all
@@ -60,7 +60,7 @@ pub(super) fn paths_in_a_furnace_count_every_bounce(trial: &Trial<'_>) -> CheckR
     let mut outcomes = Vec::new();
     for depth in [0, 1, 2, 3, 5, 12] {
         let found = follow(trial.kit, trial.seed, &room, &starts, depth, Roulette::LeftOut)?;
-        for light in &found.light {
+        for light in &found {
             let sum = |n: u32| {
                 DVec3::from_array(albedo.as_dvec3().to_array().map(|albedo| powers(albedo, n)))
                     * emission.as_dvec3()
@@ -143,7 +143,7 @@ pub(super) fn paths_of_a_white_corner_lose_nothing(trial: &Trial<'_>) -> CheckRe
     for (name, paint) in [("white planes", white), ("a white plane and a mirror", mirror)] {
         let (room, start) = corner(angle, white, paint);
         let found = follow(trial.kit, trial.seed, &room, &[start; 256], 500, Roulette::LeftOut)?;
-        for light in &found.light {
+        for light in &found {
             // The roundings of a weight per bounce.
             if (*light - 1.0).abs().max_element() <= 1e-4 {
                 outcomes.push(Ok(()));

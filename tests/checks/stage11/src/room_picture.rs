@@ -60,10 +60,8 @@ fn samples(kit: &dyn Kit, camera: &Camera, pixels: &[(u32, u32)], room: &Room) -
             (ray.origin.as_dvec3(), ray.direction.as_dvec3().normalize())
         })
         .collect();
-    let light = match follow(kit, 13, room, &starts, MAX_DEPTH, Roulette::Played) {
-        Ok(found) => found.light,
-        Err(_) => vec![DVec3::NAN; starts.len()],
-    };
+    let light = follow(kit, 13, room, &starts, MAX_DEPTH, Roulette::Played)
+        .unwrap_or_else(|_| vec![DVec3::NAN; starts.len()]);
     light.chunks(SAMPLES).map(|pixel| pixel.iter().map(|light| light.as_vec3()).collect()).collect()
 }
 

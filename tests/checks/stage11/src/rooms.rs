@@ -183,23 +183,6 @@ struct Path {
     state: PathState,
 }
 
-/// What paths have found.
-pub(super) struct Found {
-    /// The light of each path.
-    pub light: Vec<DVec3>,
-    /// The number of steps.
-    pub steps: usize,
-    /// The number of shadow questions.
-    pub shadows: usize,
-}
-
-impl Found {
-    /// One channel of all paths.
-    pub fn channel(&self, channel: usize) -> Vec<f64> {
-        self.light.iter().map(|light| light[channel]).collect()
-    }
-}
-
 /// Whether so many steps show that paths do not end: more than 40 per path, on average, and some more for a few long paths. In a
 /// room that does not end paths by their depth, light is lost at each bounce, and the slowest roulette that passes takes fewer
 /// than 20 steps per path.
@@ -216,8 +199,8 @@ pub(super) enum Roulette {
     LeftOut,
 }
 
-/// Follows paths that start with these rays, all at once: each call of `step` gets the next surface of every path. Random
-/// numbers depend on `seed`.
+/// The light of paths that start with these rays. All are followed at once: each call of `step` gets the next surface of every
+/// path. Random numbers depend on `seed`.
 pub(super) fn follow(
     kit: &dyn Kit,
     seed: u64,
@@ -225,7 +208,7 @@ pub(super) fn follow(
     starts: &[(DVec3, DVec3)],
     max_depth: u32,
     roulette: Roulette,
-) -> Result<Found, Broken> {
+) -> Result<Vec<DVec3>, Broken> {
     let start = |(index, (origin, direction)): (usize, &(DVec3, DVec3))| {
         let state = PathState {
             origin: origin.as_vec3(),
@@ -237,12 +220,13 @@ pub(super) fn follow(
         Path { index, origin: *origin, direction: *direction, state }
     };
     let mut paths: Vec<Path> = starts.iter().enumerate().map(start).collect();
-    let mut found = Found { light: vec![DVec3::ZERO; starts.len()], steps: 0, shadows: 0 };
+    let mut light = vec![DVec3::ZERO; starts.len()];
+    let mut n_steps = 0;
     let mut generation = 0u64;
     while !paths.is_empty() {
-        if are_endless(starts.len(), found.steps) {
+        if are_endless(starts.len(), n_steps) {
             let yours =
-                format!("{} of {} paths are alive after {} steps", paths.len(), starts.len(), found.steps);
+                format!("{} of {} paths are alive after {} steps", paths.len(), starts.len(), n_steps);
             let broken =
                 Broken::with_texts("step, for paths in a room", yours, "no path", "Russian roulette");
             return Err(broken.looks_like(Some(
@@ -256,7 +240,7 @@ pub(super) fn follow(
         let mut queries = Vec::with_capacity(paths.len());
         for (path, u) in paths.into_iter().zip(u.chunks(4)) {
             let Some((wall, distance)) = room.hit(path.origin, path.direction) else {
-                found.light[path.index] += (path.state.weight * room.sky).as_dvec3();
+                light[path.index] += (path.state.weight * room.sky).as_dvec3();
                 continue;
             };
             let point = path.origin + distance * path.direction;
@@ -284,19 +268,17 @@ pub(super) fn follow(
                 step.next.iter_mut().for_each(|next| next.weight /= factor);
             }
         }
-        found.steps += queries.len();
+        n_steps += queries.len();
         paths = Vec::with_capacity(met.len());
         for (((path, point), query), step) in met.into_iter().zip(&queries).zip(steps) {
-            let PathStep { light, shadow, next } = step;
-            found.light[path.index] += light.as_dvec3();
-            if let Some(shadow) = shadow {
-                found.shadows += 1;
+            light[path.index] += step.light.as_dvec3();
+            if let Some(shadow) = step.shadow {
                 let direction = shadow.direction.as_dvec3().normalize_or_zero();
                 if room.is_visible(point, direction, f64::from(shadow.distance)) {
-                    found.light[path.index] += shadow.light.as_dvec3();
+                    light[path.index] += shadow.light.as_dvec3();
                 }
             }
-            if let Some(next) = next {
+            if let Some(next) = step.next {
                 let direction = next.direction.as_dvec3().normalize_or_zero();
                 let state = PathState {
                     origin: query.vertex.surface.point,
@@ -309,5 +291,5 @@ pub(super) fn follow(
             }
         }
     }
-    Ok(found)
+    Ok(light)
 }

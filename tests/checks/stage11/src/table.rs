@@ -15,8 +15,8 @@ fn lines(kit: &dyn Kit, albedos: &[f32; 8]) -> String {
         let missing: Vec<String> = missing.iter().map(|share| digits(*share, 4)).collect();
         let enough: Vec<String> = enough.iter().map(u32::to_string).collect();
         // The density of a direction whose cosine is the albedo.
-        let direction = glam::Vec3::new((1.0 - albedo * albedo).max(0.0).sqrt(), 0.0, *albedo);
-        let pdf = kit.cosine_pdf(&[(glam::Vec3::Z, direction)])[0];
+        let direction = Vec3::new((1.0 - albedo * albedo).max(0.0).sqrt(), 0.0, *albedo);
+        let pdf = kit.cosine_pdf(&[(Vec3::Z, direction)])[0];
         format!(
             "albedo {}  missing {}  enough {}  pdf {}",
             digits(*albedo, 4),

@@ -160,12 +160,15 @@ fn wrong_counts(HitsQuery { hits, effects, quality }: &HitsQuery) -> Vec<(RayCou
     .to_vec()
 }
 
-fn broken(query: &HitsQuery, yours: RayCounts, expected: RayCounts, source: &'static str) -> Broken {
+fn judge(query: &HitsQuery, yours: RayCounts, expected: RayCounts, source: &'static str) -> CheckResult {
+    if yours == expected {
+        return Ok(());
+    }
     let input = format!(
         "rays_of_hits(&{:?},\n&{:?},\nglossy_samples {})",
         query.hits, query.effects.materials, query.quality.glossy_samples
     );
-    Broken::new(input, yours, expected, source)
+    Err(Broken::new(input, yours, expected, source))
 }
 
 /// Tables of `n` hits of each kind and of `n` samples of a light, each with the rays that it needs.
@@ -217,11 +220,10 @@ pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> CheckResult {
     let mut known = vec![(drawn(), DRAWN)];
     known.extend(single_hits_and_places(trial.varied(1, 2..50u64)));
     let queries: Vec<HitsQuery> = known.iter().map(|(query, _)| query.clone()).collect();
-    let judge = |(query, expected): &(HitsQuery, RayCounts), yours| match yours == *expected {
-        true => Ok(()),
-        false => Err(broken(query, yours, *expected, "counted by hand, or a single hit or light sample")),
+    let law = |(query, expected): &(HitsQuery, RayCounts), yours| {
+        judge(query, yours, *expected, "counted by hand, or a single hit or light sample")
     };
-    all_hold(compare_formulas(&known, trial.kit.rays_of_hits(&queries), judge, |(query, _), yours| {
+    all_hold(compare_formulas(&known, trial.kit.rays_of_hits(&queries), law, |(query, _), yours| {
         wrong_counts(query).into_iter().map(|(counts, text)| (counts == *yours, text)).collect()
     }))?;
     trial.forall(2000, hits_query(), |queries| {
@@ -229,7 +231,7 @@ pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> CheckResult {
         let all: Vec<HitsQuery> = parts.iter().flatten().map(|(part, _)| part.clone()).collect();
         let mut alone = trial.kit.rays_of_hits(&all).into_iter();
         let whole = trial.kit.rays_of_hits(queries);
-        let judge = |((query, parts), yours): ((&HitsQuery, &Parts), RayCounts)| {
+        let sums = |((query, parts), yours): ((&HitsQuery, &Parts), RayCounts)| {
             let mut sum = RayCounts::default();
             for ((_, times), one) in parts.iter().zip(alone.by_ref()) {
                 // Saturating, because a wrong answer can be any number.
@@ -239,12 +241,9 @@ pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> CheckResult {
                 add(&mut sum.reflection, one.reflection);
                 add(&mut sum.transmission, one.transmission);
             }
-            match yours == sum {
-                true => Ok(()),
-                false => Err(broken(query, yours, sum, "the sum of your counts for single hits and samples")),
-            }
+            judge(query, yours, sum, "the sum of your counts for single hits and samples")
         };
-        queries.iter().zip(&parts).zip(whole).map(judge).collect()
+        queries.iter().zip(&parts).zip(whole).map(sums).collect()
     })
 }
 

@@ -128,14 +128,6 @@ pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> CheckResult {
     })
 }
 
-/// Why a light is drawn dark.
-#[derive(Clone, Copy, Debug)]
-enum Dark {
-    No,
-    Black,
-    WithoutIntensity,
-}
-
 /// Lights of all kinds, one in five of them dark, with up to 64 samples, and what each needs.
 fn drawn_lights() -> impl Strategy<Value = (LightQuery, LightEffects)> + 'static {
     let channel = || prop_oneof![Just(0.0), 0.01f32..5.0];
@@ -145,10 +137,11 @@ fn drawn_lights() -> impl Strategy<Value = (LightQuery, LightEffects)> + 'static
         channels.swap(2, axis);
         Vec3::from(channels)
     });
-    let dark = prop_oneof![8 => Just(Dark::No), 1 => Just(Dark::Black), 1 => Just(Dark::WithoutIntensity)];
+    // How much of the colour and of the intensity is left: a light without one of them is dark.
+    let left = prop_oneof![8 => Just((1.0f32, 1.0f32)), 1 => Just((0.0, 1.0)), 1 => Just((1.0, 0.0))];
     let position = rough_point(9.0);
-    (0..4, position, color, 0.01f32..9.0, dark, any::<bool>(), 0..=64u32).prop_map(
-        |(kind, position, color, intensity, dark, shadows, light_samples)| {
+    (0..4, position, color, 0.01f32..9.0, left, any::<bool>(), 0..=64u32).prop_map(
+        |(kind, position, color, intensity, left, shadows, light_samples)| {
             let falloff = Falloff::None;
             let sphere = AreaShape::Sphere(Sphere { center: position, radius: 0.5 });
             let rectangle = AreaShape::Rectangle { corner: position, edges: (Vec3::X, Vec3::Z) };
@@ -163,11 +156,8 @@ fn drawn_lights() -> impl Strategy<Value = (LightQuery, LightEffects)> + 'static
                 2 => (Emitter::Area { shape: sphere, falloff }, by_area),
                 _ => (Emitter::Area { shape: rectangle, falloff }, by_area),
             };
-            let (color, intensity, expected) = match dark {
-                Dark::No => (color, intensity, bright),
-                Dark::Black => (Vec3::ZERO, intensity, LightEffects::default()),
-                Dark::WithoutIntensity => (color, 0.0, LightEffects::default()),
-            };
+            let expected = if left == (1.0, 1.0) { bright } else { LightEffects::default() };
+            let (color, intensity) = (left.0 * color, left.1 * intensity);
             let light = Light { emitter, color, intensity, shadows, cone: None };
             let quality = Quality { light_samples, ..Quality::default() };
             (LightQuery { light, quality }, expected)

@@ -151,6 +151,7 @@ fn variants(query: &MaterialQuery, yours: &MaterialEffects) -> Vec<(MaterialQuer
     let under = |lights: &[Light]| MaterialQuery { lights: lights.to_vec(), ..query.clone() };
     let (first, others) = query.lights.split_at(query.lights.len().min(1));
     let same = || yours.clone();
+    let lit_by = |lights: Vec<usize>| MaterialEffects { lights, ..same() };
     let no_glass = query.material.transmission == Vec3::ZERO;
     let fresnel = match query.material.fresnel {
         Fresnel::None if no_glass => Fresnel::Schlick,
@@ -167,17 +168,8 @@ fn variants(query: &MaterialQuery, yours: &MaterialEffects) -> Vec<(MaterialQuer
         (with(Material { roughness: 0.0, ..material() }), MaterialEffects { glossy: false, ..same() }),
         (depth(0), MaterialEffects { mirror: false, transmission: false, glossy: false, ..same() }),
         // Whether a light matters does not depend on the other lights.
-        (
-            under(first),
-            MaterialEffects { lights: yours.lights.iter().copied().filter(|i| *i == 0).collect(), ..same() },
-        ),
-        (
-            under(others),
-            MaterialEffects {
-                lights: yours.lights.iter().filter_map(|i| i.checked_sub(1)).collect(),
-                ..same()
-            },
-        ),
+        (under(first), lit_by(yours.lights.iter().copied().filter(|i| *i == 0).collect())),
+        (under(others), lit_by(yours.lights.iter().filter_map(|i| i.checked_sub(1)).collect())),
     ];
     if query.quality.max_depth > 0 {
         variants.push((depth(3), same()));

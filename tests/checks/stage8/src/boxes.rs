@@ -112,8 +112,7 @@ pub(super) fn boxes_have_little_room_after_transforms(trial: &Trial<'_>) -> Chec
     for axis in Vec3::AXES {
         queries.push(BoundsQuery { to_world, bounds: Aabb::new(axis, Vec3::ONE - axis) });
     }
-    let outcomes = compare(&queries, trial.kit.bounds_to_world(&queries), judge_room);
-    all_hold(outcomes)
+    all_hold(compare(&queries, trial.kit.bounds_to_world(&queries), judge_room))
 }
 
 fn judge_room(query: &BoundsQuery, yours: Aabb) -> CheckResult {

@@ -1,12 +1,13 @@
 //! Checks of `closest_hit_with_child_cache` with tables that hold the answers of `enter` and `hit`.
 
 use super::graph::{
-    ALL, NOTHING, Row, SKIP, SORT, VOLUMES, closest, describe, named, path_to, random_query, with_own_hit,
+    ALL, NOTHING, Row, SKIP, SORT, VOLUMES, closest, describe, judge_order, named, path_to, random_query,
+    with_own_hit,
 };
 use checks::prelude::*;
 use checks::tree::tie;
 use oracle::splitmix::Random;
-use raykata::graph::{ChildCache, Graph};
+use raykata::graph::{ChildCache, Graph, GraphOptimisations};
 
 /// A cache in which each node with children has one of them or, in one of three cases, none.
 fn random_cache(random: &mut Random, graph: &Graph) -> ChildCache {
@@ -106,13 +107,7 @@ pub(super) fn child_cache_goes_first(trial: &Trial<'_>) -> CheckResult {
     let unasked = "you visit the cached child without asking for its volume";
     let never = "you do not skip a child that begins beyond the closest hit";
     // A root with four children at the places 0 to 3 along the ray, as listed; the place in the cache; the tests expected.
-    type Case<'a> = (
-        &'a [u32],
-        Option<u32>,
-        raykata::graph::GraphOptimisations,
-        &'a [u32],
-        &'a [(&'a [u32], &'static str)],
-    );
+    type Case<'a> = (&'a [u32], Option<u32>, GraphOptimisations, &'a [u32], &'a [(&'a [u32], &'static str)]);
     let cases: [Case<'_>; 8] = [
         (&[3, 1, 0, 2], Some(2), NOTHING, &[2, 3, 1, 0], &[(&[3, 1, 0, 2], ignored), (&[2], cached_only)]),
         (&[1, 3, 0, 2], Some(0), VOLUMES, &[0, 1, 3, 2], &[(&[1, 3, 0, 2], ignored), (&[0], cached_only)]),
@@ -160,19 +155,10 @@ pub(super) fn child_cache_goes_first(trial: &Trial<'_>) -> CheckResult {
         CachedGraphQuery { search, cache }
     };
     let queries: Vec<CachedGraphQuery> = cases.iter().map(query).collect();
-    let answers = trial.kit.closest_hit_with_child_cache(&queries);
-    let judge = |(case, query): (&Case<'_>, &CachedGraphQuery), yours: CachedGraphAnswer| {
-        let (.., expected, mistakes) = case;
-        let asked = yours.found.asked;
-        if asked == *expected {
-            return Ok(());
-        }
-        let (yours, right) = (format!("tested the primitives {asked:?}"), format!("{expected:?}"));
-        Err(Broken::with_texts(describe_cached(query), yours, right, "the definition")
-            .explained_by(mistakes.iter().map(|(wrong, text)| (asked == *wrong, *text))))
-    };
-    let pairs = cases.iter().zip(&queries).zip(answers);
-    all_hold(pairs.map(|(pair, answer)| judge(pair, answer)).collect())
+    let answers = queries.iter().zip(trial.kit.closest_hit_with_child_cache(&queries)).collect();
+    all_hold(compare(&cases, answers, |(.., expected, mistakes), (query, yours)| {
+        judge_order(describe_cached(query), &yours.found.asked, expected, mistakes)
+    }))
 }
 
 pub(super) fn child_cache_stores_the_way_to_the_hit(trial: &Trial<'_>) -> CheckResult {

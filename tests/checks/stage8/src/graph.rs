@@ -52,9 +52,14 @@ pub(super) fn random_query(random: &mut Random, savings: GraphOptimisations) -> 
     GraphQuery { graph: Graph { nodes }, ray, savings, table: Table { boxes, primitives } }
 }
 
-/// Sorts the queries so that the reported failure, which is the first, has the fewest nodes.
-fn plainest_first(queries: &mut [GraphQuery]) {
+/// Judges the answers, the plainest queries first, so that the reported failure has the fewest nodes.
+fn judge_plainest_first(
+    trial: &Trial<'_>,
+    mut queries: Vec<GraphQuery>,
+    judge: impl Fn(&GraphQuery, GraphAnswer) -> CheckResult,
+) -> CheckResult {
     queries.sort_by_key(|query| (query.graph.nodes.len(), query.table.primitives.len()));
+    all_hold(compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge))
 }
 
 pub(super) fn describe(query: &GraphQuery) -> String {
@@ -109,17 +114,15 @@ pub(super) fn path_to(graph: &Graph, primitive: u32) -> Vec<u32> {
     path
 }
 
-fn judge_hits(trial: &Trial<'_>, mut queries: Vec<GraphQuery>) -> CheckResult {
-    plainest_first(&mut queries);
-    let judge = |query: &GraphQuery, yours: GraphAnswer| {
+fn judge_hits(trial: &Trial<'_>, queries: Vec<GraphQuery>) -> CheckResult {
+    judge_plainest_first(trial, queries, |query, yours| {
         let (found, expected) = (yours.search.hit, closest(query));
         if found == expected {
             return Ok(());
         }
         Err(Broken::with_texts(describe(query), named(found), named(expected), "brute force")
             .explained_by(lost_hits(query, found, expected, &yours.asked)))
-    };
-    all_hold(compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge))
+    })
 }
 
 /// The mistakes for a wrong closest hit, each with whether it explains this one. `asked` lists the primitives that were
@@ -161,9 +164,8 @@ pub(super) fn graph_asks_for_everything_without_savings(trial: &Trial<'_>) -> Ch
     let mut random = Random::new(trial.seed, 2);
     // Without volumes there are no entries by which nodes could be skipped or sorted.
     let savings = (0..100).flat_map(|_| [NOTHING, GraphOptimisations { volumes: false, ..ALL }]);
-    let mut queries: Vec<GraphQuery> = savings.map(|savings| random_query(&mut random, savings)).collect();
-    plainest_first(&mut queries);
-    let judge = |query: &GraphQuery, yours: GraphAnswer| {
+    let queries = savings.map(|savings| random_query(&mut random, savings)).collect();
+    judge_plainest_first(trial, queries, |query, yours| {
         let (n_boxes, mut asked) = (yours.search.counts.box_tests, yours.asked);
         asked.sort_unstable();
         let all: Vec<u32> = (0..query.table.primitives.len() as u32).collect();
@@ -188,17 +190,15 @@ pub(super) fn graph_asks_for_everything_without_savings(trial: &Trial<'_>) -> Ch
                 "you leave out a primitive below a node with a hit of its own: its children can be nearer",
             left_out && n_boxes == 0 => "you leave out a primitive: without `volumes` every primitive is tested",
         ]))
-    };
-    all_hold(compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge))
+    })
 }
 
 const LEAVES_UNTESTED: &str = "you do not test the volumes of leaves: the root has one, and so has each leaf";
 
 pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 3);
-    let mut queries: Vec<GraphQuery> = (0..200).map(|_| random_query(&mut random, VOLUMES)).collect();
-    plainest_first(&mut queries);
-    let judge = |query: &GraphQuery, yours: GraphAnswer| {
+    let queries = (0..200).map(|_| random_query(&mut random, VOLUMES)).collect();
+    judge_plainest_first(trial, queries, |query, yours| {
         let GraphQuery { graph, ray, table, .. } = query;
         // Visit the nodes whose own volume, and all volumes above it, are entered; or the root in any case.
         let search = |is_root_open: bool| {
@@ -243,8 +243,7 @@ pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> CheckResult {
             (extra, "you test primitives in a volume that the ray misses"),
             (n_boxes > boxes && !extra, "you test a volume twice, or a volume below one that the ray misses"),
         ]))
-    };
-    all_hold(compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge))
+    })
 }
 
 /// Nodes one behind the other along the ray.
@@ -297,19 +296,27 @@ pub(super) fn with_own_hit(mut query: GraphQuery) -> GraphQuery {
 /// A query, the primitives to test in order, and the orders that mistakes give.
 type Case<'a> = (GraphQuery, &'a [u32], &'a [(&'a [u32], &'static str)]);
 
-/// Compares the primitives that are tested, in order, with the expected ones.
+/// Compares the primitives that are tested, in order, with the expected ones and with those of the mistakes.
+pub(super) fn judge_order(
+    input: String,
+    asked: &[u32],
+    expected: &[u32],
+    mistakes: &[(&[u32], &'static str)],
+) -> CheckResult {
+    if asked == expected {
+        return Ok(());
+    }
+    let (yours, right) = (format!("tested the primitives {asked:?}"), format!("{expected:?}"));
+    Err(Broken::with_texts(input, yours, right, "the definition")
+        .explained_by(mistakes.iter().map(|(wrong, text)| (asked == *wrong, *text))))
+}
+
 fn judge_orders(trial: &Trial<'_>, cases: &[Case<'_>]) -> CheckResult {
     let queries: Vec<GraphQuery> = cases.iter().map(|(query, ..)| query.clone()).collect();
-    let outcomes =
-        compare(cases, trial.kit.closest_hit_in_graph(&queries), |(query, expected, mistakes), yours| {
-            if yours.asked == *expected {
-                return Ok(());
-            }
-            let (got, right) = (format!("tested the primitives {:?}", yours.asked), format!("{expected:?}"));
-            Err(Broken::with_texts(describe(query), got, right, "the definition")
-                .explained_by(mistakes.iter().map(|(wrong, text)| (yours.asked == *wrong, *text))))
-        });
-    all_hold(outcomes)
+    let answers = trial.kit.closest_hit_in_graph(&queries);
+    all_hold(compare(cases, answers, |(query, expected, mistakes), yours| {
+        judge_order(describe(query), &yours.asked, expected, mistakes)
+    }))
 }
 
 pub(super) fn graph_skips_what_begins_beyond_the_hit(trial: &Trial<'_>) -> CheckResult {

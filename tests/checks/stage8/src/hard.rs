@@ -1,5 +1,6 @@
 //! Pitfalls of the formulas for solids.
 
+use super::mistakes::alike;
 use super::solid::{Solid, turned};
 use super::solids::input;
 use checks::prelude::*;
@@ -50,11 +51,7 @@ fn judged_cases<S: Solid>(trial: &Trial<'_>, cases: &[Case<S>]) -> Vec<CheckResu
     };
     let judge = |(query, expected, text): &Case<S>, yours: Option<SolidHit>| {
         let t = yours.map(|hit| hit.t);
-        let right = match (t, expected) {
-            (Some(t), Some(expected)) => (t - expected).abs() <= 1e-5 * expected.abs(),
-            (None, None) => true,
-            _ => false,
-        };
+        let right = alike(t, *expected, |t, expected| (t - expected).abs() <= 1e-5 * expected.abs());
         // No other check tests the normal of these hits, so test its length here.
         let sound = yours.is_none_or(|hit| is_sound(&hit));
         if right && sound {
@@ -70,6 +67,13 @@ fn judged_cases<S: Solid>(trial: &Trial<'_>, cases: &[Case<S>]) -> Vec<CheckResu
         ]))
     };
     compare_formulas(&cases, answers, judge, formulas)
+}
+
+/// A random point of a circle around an axis.
+fn on_circle(random: &mut Random, axis: Vec3, radius: f32) -> Vec3 {
+    let (x, y) = axis.normalize().any_orthonormal_pair();
+    let (sin, cos) = (std::f32::consts::TAU * random.unit()).sin_cos();
+    radius * (cos * x + sin * y)
 }
 
 pub(super) fn of<S: Clone>(solid: &S) -> impl Fn(Vec3, Vec3) -> SolidQuery<S> {
@@ -250,11 +254,10 @@ const BESIDE_CYLINDER: &str =
 /// Rays from inside to the rim, and rays that touch the side.
 pub(super) fn cylinder_at_its_rim(trial: &Trial<'_>) -> CheckResult {
     let can = Cylinder { base: vec3(0.25, -0.5, 0.125), top: vec3(0.75, 1.5, 0.5), radius: 0.8 };
-    let (x, y) = (can.top - can.base).normalize().any_orthonormal_pair();
     let rim = |random: &mut Random| {
-        let (sin, cos) = (std::f32::consts::TAU * random.unit()).sin_cos();
+        let around = on_circle(random, can.top - can.base, can.radius);
         let end = if random.below(2) == 0 { can.base } else { can.top };
-        end + can.radius * (cos * x + sin * y)
+        end + around
     };
     let lost = "you lose a ray between side and end: a rounded point of one lies beyond the other; intersect \
         their intervals";
@@ -338,11 +341,8 @@ pub(super) fn cone_at_its_tip_and_rim(trial: &Trial<'_>) -> CheckResult {
     );
     let leaning = Cone { base: vec3(0.25, -0.5, 0.125), apex: vec3(0.75, 1.5, 0.5), radius: 0.8 };
     judged.extend(judge_from_inside(trial, &leaning, |_| leaning.apex, lost));
-    let (x, y) = (leaning.apex - leaning.base).normalize().any_orthonormal_pair();
-    let rim = |random: &mut Random| {
-        let (sin, cos) = (std::f32::consts::TAU * random.unit()).sin_cos();
-        leaning.base + leaning.radius * (cos * x + sin * y)
-    };
+    let rim =
+        |random: &mut Random| leaning.base + on_circle(random, leaning.apex - leaning.base, leaning.radius);
     all_hold(judged)?;
     let lost = "you lose a ray between side and base: a rounded point of one lies beyond the other; \
         intersect their intervals";

@@ -1,7 +1,7 @@
 //! Checks of the rule by which `loop_subdivide` places vertices. Every position is a sum of old positions with weights, and the
 //! weights are measured: each old vertex is moved a little, and the answers are compared.
 
-use super::subdivision::{Unlike, edges, judge, opposite};
+use super::subdivision::{edges, judge, opposite, unlike};
 use checks::prelude::*;
 use raykata::mesh::Mesh;
 
@@ -88,7 +88,7 @@ impl<'a> Step<'a> {
     }
 
     /// Checks that every vertex is the sum of the old vertices times its weights.
-    fn is_linear(&self) -> Result<(), Unlike> {
+    fn is_linear(&self) -> CheckResult {
         for (vertex, weights) in self.weights.iter().enumerate() {
             let parts = weights.iter().zip(&self.mesh.positions);
             let sum: DVec3 = parts.map(|(weight, old)| *weight * old.as_dvec3()).sum();
@@ -96,7 +96,7 @@ impl<'a> Step<'a> {
             // Allow 16 weights with an error of 1e-5 each, from two rounded sums over STEP, times coordinates up to 5.
             if !((place.as_dvec3() - sum).length() <= 1e-3) {
                 let expected = format!("{}, the sum of the old vertices times its weights", sum.as_vec3());
-                return Err(Unlike::new(format!("vertex {vertex} at {place}"), expected, Vec::new()));
+                return Err(unlike(format!("vertex {vertex} at {place}"), expected));
             }
         }
         Ok(())
@@ -144,7 +144,7 @@ impl<'a> Step<'a> {
     }
 
     /// Judges an old vertex by its weights.
-    fn judge_old(&self, vertex: u32, border: bool) -> Result<(), Unlike> {
+    fn judge_old(&self, vertex: u32, border: bool) -> CheckResult {
         let index = vertex as usize;
         let (around, along) = self.neighbours(vertex);
         let others = if border { &along } else { &around };
@@ -168,7 +168,7 @@ impl<'a> Step<'a> {
         let uses_moved = (is_uneven || self.takes_of_others(index, &self.ring(vertex)))
             && (self.depends_on_others() || !self.reaches_others());
         let adds_up = (sum - 1.0).abs() <= NEAR_WEIGHT;
-        let mistakes = vec![
+        Err(unlike(self.describe(index), describe(&shares)).explained_by([
             (around.is_empty(), "you move a vertex that belongs to no triangle: it stays"),
             (!around.is_empty() && own_only, "you do not move the old vertices: they move, too"),
             (uses_moved, FROM_BEFORE),
@@ -185,12 +185,11 @@ impl<'a> Step<'a> {
                 .when(!adds_up && !around.is_empty() && is_even(others)),
             "your weights are wrong: β is 3/16 for n = 3 neighbours, and 3/(8 n) otherwise"
                 .when(!border && adds_up && !own_only && is_even(&around)),
-        ];
-        Err(Unlike::new(self.describe(index), describe(&shares), mistakes))
+        ]))
     }
 
     /// Judges the new vertex of an edge: one of the new vertices must have the right weights.
-    fn judge_edge(&self, (p, q): (u32, u32), border: bool) -> Result<(), Unlike> {
+    fn judge_edge(&self, (p, q): (u32, u32), border: bool) -> CheckResult {
         let third = opposite(self.mesh, (p, q));
         let ends = vec![(p, 0.5), (q, 0.5)];
         let shares = match (border, &third[..]) {
@@ -203,39 +202,33 @@ impl<'a> Step<'a> {
         }
         let around: Vec<u32> = third.iter().copied().chain([p, q]).collect();
         let has = |vertex: usize, old: &u32| self.weights[vertex][*old as usize].abs() > NEAR_WEIGHT;
+        let has_all = |vertex: &usize| around.iter().all(|old| has(*vertex, old));
         // Whether the ends have different weights.
-        let mixed = fresh.clone().any(|vertex| {
-            around.iter().all(|old| has(vertex, old))
-                && (self.weights[vertex][p as usize] - self.weights[vertex][q as usize]).abs() > NEAR_WEIGHT
+        let mixed = fresh.clone().filter(has_all).any(|vertex| {
+            (self.weights[vertex][p as usize] - self.weights[vertex][q as usize]).abs() > NEAR_WEIGHT
         });
         // A new vertex that depends on both ends, on the third corners, and on no other vertex.
-        let of_these = fresh.clone().any(|vertex| {
-            around.iter().all(|old| has(vertex, old)) && !self.takes_of_others(vertex, &around)
-        });
+        let of_these = fresh.clone().filter(has_all).any(|vertex| !self.takes_of_others(vertex, &around));
         // Moved ends depend on their neighbours. If there are no other ones, any wrong weights may come from that.
         let from_moved = !self.reaches(&around)
             || fresh
                 .clone()
                 .any(|vertex| has(vertex, &p) && has(vertex, &q) && self.takes_of_others(vertex, &around));
-        let mistakes = vec![
+        let (got, right) = (format!("no new vertex for the edge {p} {q}"), describe(&shares));
+        Err(unlike(got, format!("one with {right}")).explained_by([
             (border && of_these, BORDER),
             (!border && !mixed && of_these, "the weights are 3/8 for each end and 1/8 for each third corner"),
             "you use the midpoint for an inner edge: there the two third corners have weights, too"
                 .when(!border && fresh.clone().any(|vertex| self.takes(vertex, &ends))),
             (!border && from_moved, FROM_BEFORE),
-        ];
-        Err(Unlike::new(
-            format!("no new vertex for the edge {p} {q}"),
-            format!("one with {}", describe(&shares)),
-            mistakes,
-        ))
+        ]))
     }
 
     /// Judges the vertices on borders, or all others.
-    fn judge(&self, border: bool) -> Vec<Result<(), Unlike>> {
+    fn judge(&self, border: bool) -> Vec<CheckResult> {
         let n_old = self.mesh.positions.len().min(self.yours.positions.len());
         let old = (0..n_old as u32).filter(|vertex| self.neighbours(*vertex).1.is_empty() != border);
-        let mut judged: Vec<Result<(), Unlike>> = old.map(|vertex| self.judge_old(vertex, border)).collect();
+        let mut judged: Vec<CheckResult> = old.map(|vertex| self.judge_old(vertex, border)).collect();
         let is_border = |edge: &(u32, u32)| opposite(self.mesh, *edge).len() == 1;
         let edges = edges(self.mesh).into_iter().filter(|edge| is_border(edge) == border);
         judged.extend(edges.map(|edge| self.judge_edge(edge, border)));

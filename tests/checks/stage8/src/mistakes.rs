@@ -25,13 +25,18 @@ fn first(ray: &Ray, ts: impl IntoIterator<Item = f64>) -> Option<f64> {
     ts.into_iter().filter(contains).reduce(f64::min)
 }
 
-/// Whether the answer is that of a mistake.
-fn is(ray: &Ray, yours: Option<f32>, wrong: Option<f64>) -> bool {
-    match (yours, wrong) {
+/// Whether both are misses, or both are hits that are `near` to each other.
+pub(super) fn alike<A, B>(yours: Option<A>, other: Option<B>, near: impl FnOnce(A, B) -> bool) -> bool {
+    match (yours, other) {
         (None, None) => true,
-        (Some(t), Some(wrong)) => is_near(ray, t, wrong),
+        (Some(yours), Some(other)) => near(yours, other),
         _ => false,
     }
+}
+
+/// Whether the answer is that of a mistake.
+fn is(ray: &Ray, yours: Option<f32>, wrong: Option<f64>) -> bool {
+    alike(yours, wrong, |t, wrong| is_near(ray, t, wrong))
 }
 
 pub(super) fn of_cuboid(query: &SolidQuery<Cuboid>, yours: Option<f32>, _: f64) -> Mistakes {

@@ -126,9 +126,8 @@ pub(super) fn placement_refuses_what_cannot_be_undone(trial: &Trial<'_>) -> Chec
             },
         )
     };
-    let judge = |paths: &[Vec<Affine3A>]| compare(paths, trial.kit.placement(paths), judge_refusal);
-    trial.forall_and(&chosen, 400, paths(singular(0..2)), judge)?;
-    trial.forall(100, paths(singular(2..4)), judge)
+    trial.each_and(&chosen, 400, paths(singular(0..2)), <dyn Kit>::placement, judge_refusal)?;
+    trial.each(100, paths(singular(2..4)), <dyn Kit>::placement, judge_refusal)
 }
 
 fn judge_refusal(path: &Vec<Affine3A>, yours: Option<Placement>) -> CheckResult {

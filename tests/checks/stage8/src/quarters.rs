@@ -1,7 +1,7 @@
 //! Checks the triangles of a subdivision step by their connections, not by their positions.
 
-use super::subdivision::{Unlike, unlike};
-use checks::broken::Words as _;
+use super::subdivision::unlike;
+use checks::prelude::*;
 use raykata::mesh::Mesh;
 use std::collections::BTreeSet;
 
@@ -32,7 +32,7 @@ fn begun_anew([a, b, c]: [Label; 3]) -> [Label; 3] {
 }
 
 /// Compares the triangles by labels, so that the order of edges and triangles and the positions do not matter.
-pub(super) fn triangles_are_quarters(mesh: &Mesh, yours: &Mesh) -> Result<(), Unlike> {
+pub(super) fn triangles_are_quarters(mesh: &Mesh, yours: &Mesh) -> CheckResult {
     let material = |mesh: &Mesh, face: usize| mesh.face_materials.get(face).copied();
     let quarters = |(face, &[a, b, c]): (usize, &[u32; 3])| {
         let edge = |p: u32, q: u32| (p.min(q), p.max(q));
@@ -44,7 +44,7 @@ pub(super) fn triangles_are_quarters(mesh: &Mesh, yours: &Mesh) -> Result<(), Un
     expected.sort_unstable();
     let wiring = "your triangles have wrong corners: three consist of an old vertex and the new ones of its \
         two edges, one of the three new ones";
-    let wrong = || unlike("other triangles", "the four quarters of each triangle", wiring);
+    let wrong = || unlike("other triangles", "the four quarters of each triangle").because(wiring);
     let Some(labels) = labels(mesh, yours) else { return Err(wrong()) };
     let faces = yours.triangles.iter().enumerate();
     let mut got: Vec<_> = faces
@@ -60,24 +60,22 @@ pub(super) fn triangles_are_quarters(mesh: &Mesh, yours: &Mesh) -> Result<(), Un
         faces
     };
     if corners(&got) != corners(&expected) {
-        let turned = unturned(&got) == unturned(&expected);
-        return Err(match turned {
-            true => Unlike::new(
-                "triangles with corners in the opposite order",
-                "corners in the order of the old triangle",
-                vec![
-                    "you reverse the corners of some triangles: all four keep the order of the old triangle"
-                        .when(true),
-                    (true, wiring),
-                ],
-            ),
-            false => wrong(),
-        });
+        if unturned(&got) != unturned(&expected) {
+            return Err(wrong());
+        }
+        let (got, expected) =
+            ("triangles with corners in the opposite order", "corners in the order of the old triangle");
+        return Err(unlike(got, expected).explained_by([
+            "you reverse the corners of some triangles: all four keep the order of the old triangle"
+                .when(true),
+            (true, wiring),
+        ]));
     }
     if got != expected {
         let (got, expected) =
             ("triangles with the material of another face", "the material of the old triangle for each");
-        return Err(unlike(got, expected, "the four triangles take the material of the old triangle"));
+        let mistake = "the four triangles take the material of the old triangle";
+        return Err(unlike(got, expected).because(mistake));
     }
     for (vertex, &(p, q)) in labels.iter().enumerate().take(yours.uvs.len()) {
         let right = 0.5 * (mesh.uvs[p as usize] + mesh.uvs[q as usize]);
@@ -90,7 +88,7 @@ pub(super) fn triangles_are_quarters(mesh: &Mesh, yours: &Mesh) -> Result<(), Un
             };
             let got =
                 format!("texture coordinates {} at vertex {vertex}, of edge {p} {q}", yours.uvs[vertex]);
-            return Err(unlike(got, format!("{right}"), mistake));
+            return Err(unlike(got, format!("{right}")).because(mistake));
         }
     }
     Ok(())

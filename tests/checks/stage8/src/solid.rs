@@ -31,6 +31,11 @@ pub(super) trait Solid: checks::paste::Paste + Clone + Debug + Send + Sync + 'st
     /// The exact answer.
     fn meet(&self, ray: &Ray) -> Option<Meeting>;
 
+    /// The `t` of the exact answer.
+    fn first(&self, ray: &Ray) -> Option<f32> {
+        self.meet(ray)?.t
+    }
+
     /// The same shape with each point and each direction mapped, and its radius times `size`.
     fn mapped(&self, point: Map<'_>, direction: Map<'_>, size: f32) -> Self;
 
@@ -70,14 +75,23 @@ pub(super) fn turned(v: Vec3) -> Vec3 {
     Vec3::new(v.z, v.x, v.y)
 }
 
-/// Directions of axes: on a grid, along the axes of the world, diagonal, and almost parallel to an axis.
-fn axis() -> impl Strategy<Value = Vec3> + Clone {
-    prop_oneof![2 => direction(), 1 => nasty::unit().prop_map(|unit| 2.0 * unit)]
+/// Shapes by a point, an axis and a radius. Directions of axes are on a grid, along the axes of the world, diagonal, and almost
+/// parallel to an axis. A radius is half a unit to two units, in quarters.
+fn around_axes<S: Debug + 'static>(shape: fn((Vec3, Vec3, f32)) -> S) -> BoxedStrategy<S> {
+    let axis = prop_oneof![2 => direction(), 1 => nasty::unit().prop_map(|unit| 2.0 * unit)];
+    (point(4), axis, fractions(2..=8, 4.0)).prop_map(shape).boxed()
 }
 
-/// Half a unit to two units, in quarters.
-fn radius() -> impl Strategy<Value = f32> + Clone {
-    fractions(2..=8, 4.0)
+/// The name of the student's function, the known mistakes in it, and how it is called.
+macro_rules! asked {
+    ($name:ident, $mistakes:ident) => {
+        const NAME: &'static str = stringify!($name);
+        const MISTAKES: OfAnswer<Self> = mistakes::$mistakes;
+
+        fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>> {
+            kit.$name(queries)
+        }
+    };
 }
 
 /// The length of the part of a vector that is perpendicular to `axis`.
@@ -93,13 +107,9 @@ fn in_round(base: Vec3, axis: Vec3, radius: f32, along: f32, at: Vec3) -> Vec3 {
 }
 
 impl Solid for Cuboid {
-    const NAME: &'static str = "cuboid";
-    const MISTAKES: OfAnswer<Self> = mistakes::of_cuboid;
+    asked!(cuboid, of_cuboid);
     const WRONG_NORMALS: fn(&Self, DVec3) -> WrongNormals = mistakes::normals_of_cuboid;
 
-    fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>> {
-        kit.cuboid(queries)
-    }
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
         meet(ray, Body::Cuboid(*self))
     }
@@ -127,13 +137,9 @@ impl Solid for Cuboid {
 }
 
 impl Solid for Cylinder {
-    const NAME: &'static str = "cylinder";
-    const MISTAKES: OfAnswer<Self> = mistakes::of_cylinder;
+    asked!(cylinder, of_cylinder);
     const WRONG_NORMALS: fn(&Self, DVec3) -> WrongNormals = mistakes::normals_of_cylinder;
 
-    fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>> {
-        kit.cylinder(queries)
-    }
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
         meet(ray, Body::Cylinder(*self))
     }
@@ -152,20 +158,14 @@ impl Solid for Cylinder {
         normal.dot(base).max(normal.dot(top)) + f64::from(self.radius) * beside(normal, top - base)
     }
     fn any() -> BoxedStrategy<Self> {
-        (point(4), axis(), radius())
-            .prop_map(|(base, axis, radius)| Cylinder { base, top: base + axis, radius })
-            .boxed()
+        around_axes(|(base, axis, radius)| Cylinder { base, top: base + axis, radius })
     }
 }
 
 impl Solid for Cone {
-    const NAME: &'static str = "cone";
-    const MISTAKES: OfAnswer<Self> = mistakes::of_cone;
+    asked!(cone, of_cone);
     const WRONG_NORMALS: fn(&Self, DVec3) -> WrongNormals = mistakes::normals_of_cone;
 
-    fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>> {
-        kit.cone(queries)
-    }
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
         meet(ray, Body::Cone(*self))
     }
@@ -185,20 +185,14 @@ impl Solid for Cone {
         normal.dot(apex).max(normal.dot(base) + f64::from(self.radius) * beside(normal, apex - base))
     }
     fn any() -> BoxedStrategy<Self> {
-        (point(4), axis(), radius())
-            .prop_map(|(base, axis, radius)| Cone { base, apex: base + axis, radius })
-            .boxed()
+        around_axes(|(base, axis, radius)| Cone { base, apex: base + axis, radius })
     }
 }
 
 impl Solid for Disk {
-    const NAME: &'static str = "disk";
-    const MISTAKES: OfAnswer<Self> = mistakes::of_disk;
+    asked!(disk, of_disk);
     const FLAT: bool = true;
 
-    fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>> {
-        kit.disk(queries)
-    }
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
         meet(ray, Body::Disk(*self))
     }
@@ -217,20 +211,14 @@ impl Solid for Disk {
         normal.dot(self.center.as_dvec3()) + f64::from(self.radius) * beside(normal, self.normal.as_dvec3())
     }
     fn any() -> BoxedStrategy<Self> {
-        (point(4), axis(), radius())
-            .prop_map(|(center, normal, radius)| Disk { center, normal, radius })
-            .boxed()
+        around_axes(|(center, normal, radius)| Disk { center, normal, radius })
     }
 }
 
 impl Solid for Polygon {
-    const NAME: &'static str = "polygon";
-    const MISTAKES: OfAnswer<Self> = mistakes::of_polygon;
+    asked!(polygon, of_polygon);
     const FLAT: bool = true;
 
-    fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>> {
-        kit.polygon(queries)
-    }
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
         meet_fan(ray, self).map(|(meeting, _)| meeting)
     }

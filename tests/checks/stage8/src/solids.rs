@@ -1,6 +1,6 @@
 //! Laws that hold for all solids.
 
-use super::mistakes::{Mistakes, OUTSIDE, is_near};
+use super::mistakes::{Mistakes, OUTSIDE, alike, is_near};
 use super::solid::Solid;
 use checks::prelude::*;
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
@@ -135,11 +135,7 @@ pub(super) fn input<S: Solid>(query: &SolidQuery<S>) -> String {
 }
 
 fn is_right(yours: Option<SolidHit>, expected: Option<(f32, f32)>) -> bool {
-    match (yours, expected) {
-        (None, None) => true,
-        (Some(hit), Some((low, high))) => low <= hit.t && hit.t <= high,
-        _ => false,
-    }
+    alike(yours, expected, |hit, (low, high)| low <= hit.t && hit.t <= high)
 }
 
 const LIMITED: &str = "you compare with a fixed limit: the same ray at another size, or with a direction of another \
@@ -152,8 +148,7 @@ fn judge<S: Solid>(trial: &Trial<'_>, queries: &[Scaled<S>]) -> Vec<CheckResult>
         if is_right(yours, expected) {
             return Ok(());
         }
-        let (yours, exact) =
-            (yours.map(|hit| hit.t), query.solid.meet(&query.ray).and_then(|meeting| meeting.t));
+        let (yours, exact) = (yours.map(|hit| hit.t), query.solid.first(&query.ray));
         let describe =
             |t: Option<f32>| t.map_or("None".into(), |t| format!("Some at t = {:?}", scaled.t_scale() * t));
         let mut shown = mistakes(scaled, yours, exact);
@@ -180,13 +175,10 @@ const FIXED_EPSILON: &str = "you drop the hit by a fixed epsilon: t is small bec
 fn mistakes<S: Solid>(scaled: &Scaled<S>, yours: Option<f32>, exact: Option<f32>) -> Mistakes {
     let SolidQuery { ray, solid } = &scaled.plain;
     let infinite = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
-    let first = solid.meet(&infinite).and_then(|meeting| meeting.t);
-    let meets = |t_min, t_max| solid.meet(&ray.with_range(t_min, t_max)).is_some_and(|end| end.t.is_some());
+    let first = solid.first(&infinite);
+    let meets = |t_min, t_max| solid.first(&ray.with_range(t_min, t_max)).is_some();
     let inside = meets(f32::NEG_INFINITY, 0.0) && meets(0.0, f32::INFINITY);
-    let last = || {
-        let back = Ray { direction: -ray.direction, ..infinite };
-        solid.meet(&back).and_then(|meeting| meeting.t).map(|t| -f64::from(t))
-    };
+    let last = || solid.first(&Ray { direction: -ray.direction, ..infinite }).map(|t| -f64::from(t));
     let near = |wrong: f64| yours.is_some_and(|t| is_near(ray, t, wrong));
     let lost = yours.is_none() && exact.is_some();
     // The length of the direction that the student's function received.
@@ -197,8 +189,7 @@ fn mistakes<S: Solid>(scaled: &Scaled<S>, yours: Option<f32>, exact: Option<f32>
     let is_far = !S::FLAT && last().is_some_and(near);
     // The answer of a student who uses another range.
     let is_range = |t_min, t_max| {
-        let wrong = solid.meet(&ray.with_range(t_min, t_max)).and_then(|meeting| meeting.t);
-        yours.is_some() == wrong.is_some() && wrong.is_none_or(|wrong| near(wrong.into()))
+        alike(yours, solid.first(&ray.with_range(t_min, t_max)), |_, wrong| near(wrong.into()))
     };
     // Whether an epsilon may drop a point at this t of the plain query.
     let is_dropped = |t: f64| f64::from(scaled.t_scale()) * t < 0.01;
@@ -246,7 +237,7 @@ fn through_the_middle<S: Solid>(trial: &Trial<'_>) -> CheckResult {
     let from = solid.inside(Vec3::ZERO) + 8.0 * Vec3::new(0.5, 0.75, -0.625);
     let query = SolidQuery { ray: Ray::new(from, solid.inside(Vec3::ZERO) - from), solid };
     // The t of a constant is not that of the hit.
-    let exact = query.solid.meet(&query.ray).and_then(|meeting| meeting.t).unwrap_or(f32::NAN);
+    let exact = query.solid.first(&query.ray).unwrap_or(f32::NAN);
     let yours = S::ask(trial.kit, std::slice::from_ref(&query))[0].map(|hit| hit.t);
     if yours.is_some_and(|t| (t - exact).abs() < 1e-3) {
         return Ok(());

@@ -17,6 +17,10 @@ impl Spline {
     fn count(&self) -> usize {
         self.knots.len() - self.degree - 1
     }
+
+    fn query(&self, index: usize) -> BasisQuery {
+        BasisQuery { knots: self.knots.clone(), degree: self.degree, index, u: self.u }
+    }
 }
 
 /// Splines of a degree up to `most_degree` with up to `most_groups` different knots. Knots inside repeat up to as many times
@@ -89,6 +93,17 @@ impl Rule {
         self.value(&knots.iter().map(|&knot| f64::from(knot)).collect::<Vec<f64>>(), degree, index, u)
     }
 
+    /// The same for a query.
+    fn of(self, query: &BasisQuery) -> f64 {
+        self.basis(&query.knots, query.degree, query.index, f64::from(query.u))
+    }
+
+    /// Whether the recursion gives this value.
+    fn gives(self, query: &BasisQuery, yours: f32) -> bool {
+        let value = self.of(query);
+        same(f64::from(yours), value, room(query.degree, value))
+    }
+
     fn value(self, knots: &[f64], degree: usize, index: usize, u: f64) -> f64 {
         let k = |offset: usize| knots[index + offset];
         if degree == 0 {
@@ -131,56 +146,35 @@ fn same(yours: f64, other: f64, room: f64) -> bool {
 }
 
 pub(super) fn bspline_basis_follows_the_recursion(trial: &Trial<'_>) -> CheckResult {
-    let inputs = (spline(4, 5), 0..64usize).prop_map(|(spline, index)| BasisQuery {
-        index: index % spline.count(),
-        degree: spline.degree,
-        u: spline.u,
-        knots: spline.knots,
-    });
-    let value = |query: &BasisQuery, rule: Rule| {
-        rule.basis(&query.knots, query.degree, query.index, f64::from(query.u))
-    };
+    let inputs = (spline(4, 5), 0..64usize).prop_map(|(spline, index)| spline.query(index % spline.count()));
     // An empty span at the end.
     let empty = BasisQuery { knots: vec![0.0, 0.0, 1.0, 1.0], degree: 0, index: 2, u: 1.0 };
     trial.each_and(&[empty], 1000, inputs, <dyn Kit>::bspline_basis, |query, yours| {
-        let gives = |rule: Rule| {
-            let value = value(query, rule);
-            same(f64::from(yours), value, room(query.degree, value))
-        };
         let broken = || {
             let (knots, degree, index, u) = (list(&query.knots), query.degree, query.index, query.u.paste());
             let input = format!("bspline_basis(&{knots}, {degree}, {index}, {u})");
-            Broken::new(input, yours, value(query, Rule::Right) as f32, "the recursion in double")
+            Broken::new(input, yours, Rule::Right.of(query) as f32, "the recursion in double")
         };
-        unless(gives(Rule::Right), broken).formulas(WRONG.map(|(rule, text)| (gives(rule), text)))
+        unless(Rule::Right.gives(query, yours), broken)
+            .formulas(WRONG.map(|(rule, text)| (rule.gives(query, yours), text)))
     })
 }
 
 pub(super) fn bspline_basis_sums_to_one(trial: &Trial<'_>) -> CheckResult {
     trial.forall(400, spline(4, 5), |splines| {
-        let query = |spline: &Spline, index: usize| BasisQuery {
-            knots: spline.knots.clone(),
-            degree: spline.degree,
-            index,
-            u: spline.u,
-        };
         let of_spline =
-            |spline: &Spline| (0..spline.count()).map(|index| query(spline, index)).collect::<Vec<_>>();
-        let queries: Vec<BasisQuery> = splines.iter().flat_map(of_spline).collect();
-        let mut answers = trial.kit.bspline_basis(&queries).into_iter();
-        let judge = |spline: &Spline| {
-            let values: Vec<f32> = answers.by_ref().take(spline.count()).collect();
+            |spline: &Spline| (0..spline.count()).map(|index| spline.query(index)).collect::<Vec<_>>();
+        let queries: Vec<Vec<BasisQuery>> = splines.iter().map(of_spline).collect();
+        let mut answers = trial.kit.bspline_basis(&queries.concat()).into_iter();
+        let judge = |(spline, queries): (&Spline, &Vec<BasisQuery>)| {
+            let values: Vec<f32> = answers.by_ref().take(queries.len()).collect();
             let sum: f64 = values.iter().map(|&value| f64::from(value)).sum();
             let is_sum = (sum - 1.0).abs() <= room(spline.degree, 1.0);
-            let degree = spline.degree;
-            let gives = |rule: Rule| {
-                (0..spline.count()).all(|index| {
-                    let value = rule.basis(&spline.knots, degree, index, f64::from(spline.u));
-                    same(f64::from(values[index]), value, room(degree, value))
-                })
-            };
+            let gives =
+                |rule: Rule| queries.iter().zip(&values).all(|(query, value)| rule.gives(query, *value));
             let broken = || {
-                let (n, knots, u) = (spline.count(), list(&spline.knots), spline.u.paste());
+                let (n, degree, knots) = (spline.count(), spline.degree, list(&spline.knots));
+                let u = spline.u.paste();
                 let input = format!("(0..{n}).map(|i| bspline_basis(&{knots}, {degree}, i, {u}))");
                 let expected = "values of at least 0 with the sum 1";
                 Broken::with_texts(input, format!("{values:?}, sum {sum}"), expected, "partition of unity")
@@ -188,7 +182,7 @@ pub(super) fn bspline_basis_sums_to_one(trial: &Trial<'_>) -> CheckResult {
             let right = is_sum && values.iter().all(|value| *value >= 0.0);
             unless(right, broken).formulas(WRONG.map(|(rule, text)| (gives(rule), text)))
         };
-        proven(splines.iter().map(judge))
+        proven(splines.iter().zip(&queries).map(judge))
     })
 }
 
@@ -364,8 +358,7 @@ pub(super) fn nurbs_arcs_are_exact(trial: &Trial<'_>) -> CheckResult {
     trial.forall(400, arc(), |arcs| {
         let queries: Vec<NurbsQuery> = arcs.iter().map(|arc| arc.query.clone()).collect();
         compare(arcs, trial.kit.nurbs_point(&queries), |arc, yours| {
-            let from_axis = |point: DVec3| {
-                let mut point = point;
+            let from_axis = |mut point: DVec3| {
                 point[arc.axis] = 0.0;
                 point.length()
             };

@@ -112,33 +112,13 @@ pub(super) fn opposite(mesh: &Mesh, (p, q): (u32, u32)) -> Vec<u32> {
     both.flat_map(|triangle| triangle.iter().copied().filter(|&vertex| vertex != p && vertex != q)).collect()
 }
 
-/// The answer, the expected answer, and the known mistakes, each with whether it explains this answer.
-pub(super) struct Unlike {
-    got: String,
-    expected: String,
-    mistakes: Vec<(bool, &'static str)>,
-}
-
-impl Unlike {
-    pub(super) fn new(
-        got: impl Into<String>,
-        expected: impl Into<String>,
-        mistakes: Vec<(bool, &'static str)>,
-    ) -> Unlike {
-        Unlike { got: got.into(), expected: expected.into(), mistakes }
-    }
-}
-
-/// An answer that one mistake explains.
-pub(super) fn unlike(got: impl Into<String>, expected: impl Into<String>, mistake: &'static str) -> Unlike {
-    Unlike::new(got, expected, vec![(true, mistake)])
+/// A broken law of a mesh. [`judge`] adds the name of the mesh.
+pub(super) fn unlike(got: impl Into<String>, expected: impl Into<String>) -> Broken {
+    Broken::with_texts("", got, expected, "the rule")
 }
 
 /// Judges some laws for every mesh.
-pub(super) fn judge(
-    trial: &Trial<'_>,
-    laws: impl Fn(&Mesh, &Mesh) -> Vec<Result<(), Unlike>>,
-) -> CheckResult {
+pub(super) fn judge(trial: &Trial<'_>, laws: impl Fn(&Mesh, &Mesh) -> Vec<CheckResult>) -> CheckResult {
     let meshes = meshes();
     judge_meshes(trial, &meshes, &laws)?;
     // The same meshes with other numbers of their vertices.
@@ -174,17 +154,13 @@ fn renumbered(mesh: &Mesh, order: &[usize]) -> Mesh {
 fn judge_meshes(
     trial: &Trial<'_>,
     meshes: &[(&'static str, Mesh)],
-    laws: &impl Fn(&Mesh, &Mesh) -> Vec<Result<(), Unlike>>,
+    laws: &impl Fn(&Mesh, &Mesh) -> Vec<CheckResult>,
 ) -> CheckResult {
     let queries: Vec<Mesh> = meshes.iter().map(|(_, mesh)| mesh.clone()).collect();
     let pairs = meshes.iter().zip(trial.kit.loop_subdivide(&queries));
     let judge_mesh = |((name, mesh), yours): (&(&str, Mesh), Mesh)| -> Vec<CheckResult> {
-        let judged = laws(mesh, &yours).into_iter();
-        let broken = |unlike: Unlike| {
-            Broken::with_texts(format!("loop_subdivide of {name}"), unlike.got, unlike.expected, "the rule")
-                .explained_by(unlike.mistakes)
-        };
-        judged.map(|law| law.map_err(broken)).collect()
+        let of_mesh = |broken: Broken| Broken { input: format!("loop_subdivide of {name}"), ..broken };
+        laws(mesh, &yours).into_iter().map(|law| law.map_err(of_mesh)).collect()
     };
     all_hold(pairs.flat_map(judge_mesh).collect())
 }
@@ -196,29 +172,25 @@ pub(super) fn loop_makes_four_triangles_of_each(trial: &Trial<'_>) -> CheckResul
 }
 
 /// Judges the numbers of vertices, triangles, normals, texture coordinates and materials.
-fn judge_counts(mesh: &Mesh, yours: &Mesh) -> Result<(), Unlike> {
+fn judge_counts(mesh: &Mesh, yours: &Mesh) -> CheckResult {
     let (n_old, n_edges) = (mesh.positions.len(), edges(mesh).len());
     let describe =
         |mesh: &Mesh| format!("{} vertices, {} triangles", mesh.positions.len(), mesh.triangles.len());
     let (vertices, triangles) = (n_old + n_edges, 4 * mesh.triangles.len());
     let (n, n_triangles) = (yours.positions.len(), yours.triangles.len());
     if (n, n_triangles) != (vertices, triangles) {
-        let mistakes = vec![
+        let right = format!("{vertices} vertices, {triangles} triangles");
+        return Err(unlike(describe(yours), right).explained_by([
             "you make more than one new vertex per edge: the triangles on both sides share it"
                 .when(n == n_old + 3 * mesh.triangles.len() && n > vertices),
             "you do not make four triangles of each: three at its corners and one in the middle"
                 .when(n_triangles != triangles),
             (n < vertices, "you make too few new vertices: there is one per edge, after the old ones"),
-        ];
-        return Err(Unlike::new(
-            describe(yours),
-            format!("{vertices} vertices, {triangles} triangles"),
-            mistakes,
-        ));
+        ]));
     }
     if !yours.normals.is_empty() {
         let describe = format!("{} normals", yours.normals.len());
-        return Err(unlike(describe, "none", "normals are dropped, because the surface changes"));
+        return Err(unlike(describe, "none").because("normals are dropped, because the surface changes"));
     }
     let lengths = [
         (
@@ -239,8 +211,8 @@ fn judge_counts(mesh: &Mesh, yours: &Mesh) -> Result<(), Unlike> {
     for (before, yours, each, what, mistake) in lengths {
         let right = if before == 0 { 0 } else { each };
         if yours != right {
-            return Err(unlike(format!("{yours} {what}"), format!("{right}"), mistake));
+            return Err(unlike(format!("{yours} {what}"), format!("{right}")).because(mistake));
         }
     }
-    yours.validate().map_err(|message| Unlike::new(message, "a valid mesh", Vec::new()))
+    yours.validate().map_err(|message| unlike(message, "a valid mesh"))
 }
