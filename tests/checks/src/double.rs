@@ -3,11 +3,13 @@
 
 use crate::broken::{Broken, CheckResult};
 use crate::judge::compare_formulas;
+use crate::paste::Arguments;
 use glam::{DVec3, Vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::TriangleHit;
 use raykata::ray::Ray;
 use raykata::shape::{Plane, PlaneEquation, Sphere, Triangle};
+use std::fmt::Debug;
 
 /// The largest relative error of one rounding to `f32`.
 pub const U: f64 = f32::EPSILON as f64 / 2.0;
@@ -32,13 +34,17 @@ pub enum Expected {
 }
 
 /// An answer with its tolerance.
-pub trait Tolerant<A> {
+pub trait Tolerant<A: Debug> {
     /// Whether a correct method may give this answer.
     fn accepts(&self, answer: A) -> bool;
     /// Whether single precision cannot decide.
     fn is_open(&self) -> bool;
     /// The text for messages.
     fn words(&self) -> String;
+    /// The text of an answer of the student.
+    fn words_of(answer: A) -> String {
+        format!("{answer:?}")
+    }
 }
 
 impl Expected {
@@ -71,19 +77,20 @@ impl Tolerant<Option<f32>> for Expected {
     }
 }
 
-/// Judges answers by their tolerance. `broken` gets the expected answer in words, `observations` are what a wrong answer
-/// shows, and `formulas` also get whether the answer is right. Where single precision cannot decide, each formula
+/// Judges the answers of the function `name` by their tolerance, with this source of the expected ones. `observations` are what a
+/// wrong answer shows, and `formulas` also get whether the answer is right. Where single precision cannot decide, each formula
 /// may give each answer.
-pub fn compare_tolerant<Q, A: Copy + PartialEq, E: Tolerant<A>, const N: usize>(
+pub fn compare_tolerant<Q: Copy + Arguments, A: Copy + Debug + PartialEq, E: Tolerant<A>, const N: usize>(
     cases: &[(Q, E)],
-    answers: Vec<A>,
-    broken: impl Fn(&Q, A, String) -> Broken,
+    (name, source): (&str, &'static str),
+    ask: impl Fn(&[Q]) -> Vec<A>,
     observations: impl Fn(&Q, A) -> [(bool, &'static str); N],
     formulas: impl Fn(&Q, A, bool) -> Vec<(bool, &'static str)>,
 ) -> Vec<CheckResult> {
+    let answers = ask(&cases.iter().map(|case| case.0).collect::<Vec<Q>>());
     let judge = |(query, expected): &(Q, E), yours: A| match expected.accepts(yours) {
         true => Ok(()),
-        false => Err(broken(query, yours, expected.words())),
+        false => Err(Broken::with_texts(query.call(name), E::words_of(yours), expected.words(), source)),
     };
     // Many formulas give no hit to many queries. A method that has one answer for a large batch is none of them.
     let is_constant = cases.len() > 100 && answers.iter().all(|answer| *answer == answers[0]);
@@ -256,6 +263,12 @@ impl Tolerant<Option<TriangleHit>> for TriangleExpected {
             }
             other => other.words(),
         }
+    }
+
+    fn words_of(hit: Option<TriangleHit>) -> String {
+        hit.map_or("None".into(), |hit| {
+            format!("t = {:?}, beta = {:?}, gamma = {:?}", hit.t, hit.beta, hit.gamma)
+        })
     }
 }
 

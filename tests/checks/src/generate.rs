@@ -118,6 +118,11 @@ pub fn triangle() -> impl Strategy<Value = Triangle> + Clone {
     corners.prop_filter("no area", has_area).prop_map(|(a, b, c)| Triangle { a, b, c })
 }
 
+/// The triangle with all coordinates times `size`.
+pub fn scaled(Triangle { a, b, c }: Triangle, size: f32) -> Triangle {
+    Triangle { a: size * a, b: size * b, c: size * c }
+}
+
 /// A positive number between `10^low` and `10^high`, uniform in its logarithm.
 pub fn magnitude(low: f32, high: f32) -> impl Strategy<Value = f32> + Clone {
     number(low..high).prop_map(|exponent| 10f32.powf(exponent))

@@ -196,6 +196,18 @@ pub fn covers_each_part(
     Err(broken.looks_like(proven.or(described).or(gap.map(str::to_owned))))
 }
 
+/// Whether all of these values fit one of the random numbers, or 1 less it.
+pub fn is_of_one_number<T>(
+    u: &[Vec2],
+    values: impl Iterator<Item = T> + Clone,
+    fits: impl Fn(f64, T) -> bool,
+) -> bool {
+    (0..4).any(|which| {
+        let number = |u: &Vec2| f64::from([u.x, u.y, 1.0 - u.x, 1.0 - u.y][which]);
+        u.iter().zip(values.clone()).all(|(u, value)| fits(number(u), value))
+    })
+}
+
 /// Whether all of these values are the same power of one of the random numbers, or of 1 less it, for an exponent that is not
 /// `right`.
 pub fn is_other_power(u: &[Vec2], values: &[f64], right: f64) -> bool {

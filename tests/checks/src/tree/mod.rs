@@ -16,6 +16,17 @@ pub fn around<'a>(boxes: impl IntoIterator<Item = &'a Aabb>) -> Aabb {
     boxes.into_iter().fold(Aabb::EMPTY, |all, one| Aabb::new(all.min.min(one.min), all.max.max(one.max)))
 }
 
+/// The smallest box around all of `primitives`.
+pub fn around_all(primitives: &[PrimitiveRef]) -> Aabb {
+    around(primitives.iter().map(|p| &p.bounds))
+}
+
+/// The smallest box around the centroids of `primitives`.
+pub fn around_centroids(primitives: &[PrimitiveRef]) -> Aabb {
+    let centroids: Vec<Aabb> = primitives.iter().map(|p| Aabb::new(p.centroid, p.centroid)).collect();
+    around(&centroids)
+}
+
 /// Half the surface area of a box; 0 for an empty one.
 pub fn half_area(bounds: &Aabb) -> f64 {
     if bounds.is_empty() {
@@ -37,7 +48,7 @@ pub fn references(boxes: &[Aabb]) -> Vec<PrimitiveRef> {
 
 /// The cost of a cut, `A(L) n(L) + A(R) n(R)`, with half areas.
 pub fn cut_cost(left: &[PrimitiveRef], right: &[PrimitiveRef]) -> f64 {
-    let side = |part: &[PrimitiveRef]| half_area(&around(part.iter().map(|p| &p.bounds))) * part.len() as f64;
+    let side = |part: &[PrimitiveRef]| half_area(&around_all(part)) * part.len() as f64;
     side(left) + side(right)
 }
 
@@ -70,7 +81,7 @@ pub fn least_cost(
 
 /// Whether a leaf is cheaper than a cut of this cost; `None` if the two differ by so little that rounding decides.
 pub fn leaf_is_cheaper(primitives: &[PrimitiveRef], cost: f64) -> Option<bool> {
-    let area = half_area(&around(primitives.iter().map(|p| &p.bounds)));
+    let area = half_area(&around_all(primitives));
     let (traversal, intersection) = (f64::from(TRAVERSAL_COST), f64::from(INTERSECTION_COST));
     let leaf = intersection * area * primitives.len() as f64;
     let split = traversal * area + intersection * cost;
@@ -82,8 +93,7 @@ pub fn leaf_is_cheaper(primitives: &[PrimitiveRef], cost: f64) -> Option<bool> {
 pub fn joined(boxes: &[Aabb], leaf_size: usize) -> Bvh {
     let references = references(boxes);
     let leaves: Vec<&[PrimitiveRef]> = references.chunks(leaf_size).collect();
-    let mut bounds: Vec<Aabb> =
-        leaves.iter().map(|leaf| around(leaf.iter().map(|primitive| &primitive.bounds))).collect();
+    let mut bounds: Vec<Aabb> = leaves.iter().map(|leaf| around_all(leaf)).collect();
     let mut pairs = Vec::new();
     let mut level: Vec<usize> = (0..leaves.len()).collect();
     while level.len() > 1 {

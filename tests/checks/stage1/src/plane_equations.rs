@@ -13,12 +13,9 @@ fn judge_equations(trial: &Trial<'_>, queries: &[PlaneEquationQuery], sum: Sum) 
 }
 
 fn judge_cases(trial: &Trial<'_>, cases: &[Case], source: &'static str) -> Vec<CheckResult> {
-    let queries: Vec<PlaneEquationQuery> = cases.iter().map(|case| case.0).collect();
-    let broken = |query: &PlaneEquationQuery, yours, expected| {
-        Broken::with_texts(query.call("plane_by_coefficients"), format!("{yours:?}"), expected, source)
-    };
+    let ask = |queries: &[PlaneEquationQuery]| trial.kit.plane_by_coefficients(queries);
     let shown = |query: &PlaneEquationQuery, yours| observations(&query.ray, yours);
-    compare_tolerant(cases, trial.kit.plane_by_coefficients(&queries), broken, shown, formulas)
+    compare_tolerant(cases, ("plane_by_coefficients", source), ask, shown, formulas)
 }
 
 /// Wrong formulas in the same order for every query, each with whether it gives this answer; `is_right` says whether the

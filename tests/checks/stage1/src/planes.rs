@@ -13,12 +13,8 @@ fn judge_planes(trial: &Trial<'_>, queries: &[PlaneQuery]) -> Vec<CheckResult> {
 }
 
 fn judge_cases(trial: &Trial<'_>, cases: &[Case], source: &'static str) -> Vec<CheckResult> {
-    let queries: Vec<PlaneQuery> = cases.iter().map(|case| case.0).collect();
-    let broken = |query: &PlaneQuery, yours, expected| {
-        Broken::with_texts(query.call("plane"), format!("{yours:?}"), expected, source)
-    };
     let shown = |query: &PlaneQuery, yours| observations(&query.ray, yours);
-    compare_tolerant(cases, trial.kit.plane(&queries), broken, shown, mistakes)
+    compare_tolerant(cases, ("plane", source), |queries| trial.kit.plane(queries), shown, mistakes)
 }
 
 /// Mistakes that a wrong answer alone shows.
@@ -151,16 +147,15 @@ fn judge_ends(trial: &Trial<'_>, inputs: &[(Vec3, Vec3, Vec3)]) -> Vec<CheckResu
         plane: Plane { point: Vec3::ONE, normal: *normal },
     };
     let queries: Vec<PlaneQuery> = inputs.iter().map(query).collect();
-    let mut outcomes = vec![Ok(()); queries.len()];
-    for (i, (query, t)) in queries.iter().zip(trial.kit.plane(&queries)).enumerate() {
-        let Some(t) = t.filter(|&t| query.ray.contains(t)) else { continue };
+    let judge = |(query, t): (&PlaneQuery, Option<f32>)| {
+        let Some(t) = t.filter(|&t| query.ray.contains(t)) else { return Ok(()) };
         let cases = nasty::ranges(t).map(|((t_min, t_max), counts)| {
             let ray = query.ray.with_range(t_min, t_max);
             (PlaneQuery { ray, ..*query }, Expected::exactly(counts.then_some(t)))
         });
-        outcomes[i] = all_hold(judge_cases(trial, &cases, "the t for the infinite ray"));
-    }
-    outcomes
+        all_hold(judge_cases(trial, &cases, "the t for the infinite ray"))
+    };
+    queries.iter().zip(trial.kit.plane(&queries)).map(judge).collect()
 }
 
 /// Rays along a plane, a plane without a normal, and rays that hit.

@@ -60,12 +60,9 @@ impl SphereFunction {
         accepts: Accepts,
         source: &'static str,
     ) -> Vec<CheckResult> {
-        let queries: Vec<SphereQuery> = cases.iter().map(|case| case.0).collect();
-        let broken = |query: &SphereQuery, yours, expected| {
-            Broken::with_texts(query.call(self.name), format!("{yours:?}"), expected, source)
-        };
+        let ask = |queries: &[SphereQuery]| (self.ask)(trial.kit, queries);
         let formulas = |query: &SphereQuery, yours, _| mistakes(query, yours, accepts);
-        compare_tolerant(cases, (self.ask)(trial.kit, &queries), broken, observations, formulas)
+        compare_tolerant(cases, (self.name, source), ask, observations, formulas)
     }
 }
 

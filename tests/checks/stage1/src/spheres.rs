@@ -242,9 +242,9 @@ pub(super) fn sphere_normal_points_outwards(trial: &Trial<'_>) -> CheckResult {
             let expected = outwards.normalize_or_zero();
             // Every unit vector is right at the centre.
             let anywhere = outwards == DVec3::ZERO && (yours.length() - 1.0).abs() < 1e-6;
-            let input = || call("sphere_normal", &[&sphere.center, point]);
             let broken = || {
-                Broken::new(input(), yours, expected.as_vec3(), "double precision").explained_by([
+                let input = call("sphere_normal", &[&sphere.center, point]);
+                Broken::new(input, yours, expected.as_vec3(), "double precision").explained_by([
                     (near(-expected), "your normal points inwards"),
                     (near(outwards), "your normal is not of unit length"),
                 ])

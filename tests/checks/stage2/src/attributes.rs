@@ -1,6 +1,6 @@
 //! Attributes of a triangle: interpolation and the face normal.
 
-use checks::generate::triangle;
+use checks::generate::{scaled, triangle};
 use checks::prelude::*;
 
 pub(super) fn interpolation_weighs_the_corners(trial: &Trial<'_>) -> CheckResult {
@@ -39,15 +39,6 @@ pub(super) fn interpolation_weighs_the_corners(trial: &Trial<'_>) -> CheckResult
                 "you limit the value to 0..1: not every value is a colour, so return the weighted sum as it is",
         ]);
         unless(yours == expected, || Broken::new(input(), yours, expected, "closed form")).formulas(mistakes)
-    })
-}
-
-/// A triangle whose corners are multiples of 1/8, times a power of two, so that its edges are exact.
-fn sized() -> impl Strategy<Value = Triangle> + Clone {
-    (triangle(), nasty::scale(-60..=60)).prop_map(|(t, size)| Triangle {
-        a: size * t.a,
-        b: size * t.b,
-        c: size * t.c,
     })
 }
 
@@ -135,5 +126,7 @@ pub(super) fn face_normal_has_unit_length_at_any_size(trial: &Trial<'_>) -> Chec
         (Vec3::X, vec3(0.5, 1e-4, 0.0)),
     ];
     let drawn = corners.map(|(b, c)| Triangle { a: Vec3::ZERO, b, c });
-    trial.each_and(&drawn, 2000, prop_oneof![triangle(), sized()], <dyn Kit>::face_normal, judge_face_normal)
+    // Corners that are multiples of 1/8, times a power of two, have exact edges.
+    let sized = (triangle(), nasty::scale(-60..=60)).prop_map(|(triangle, size)| scaled(triangle, size));
+    trial.each_and(&drawn, 2000, prop_oneof![triangle(), sized], <dyn Kit>::face_normal, judge_face_normal)
 }

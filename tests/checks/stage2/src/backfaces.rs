@@ -1,7 +1,8 @@
 //! The backfacing test: the side of a triangle from which a ray comes.
 
+use super::meet::UNIT;
 use checks::double::LIMITS;
-use checks::generate::triangle;
+use checks::generate::{scaled, triangle};
 use checks::prelude::*;
 
 /// `n·d`, and the largest error of a method in single precision.
@@ -80,11 +81,8 @@ fn ordinary() -> impl Strategy<Value = TriangleQuery> + Clone {
     prop_oneof![ordinary, grazing]
 }
 
-/// A triangle in the plane z = 0 whose front is the side of +z.
-const FLAT: Triangle = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
-
 pub(super) fn backfacing_is_the_sign_of_n_dot_d(trial: &Trial<'_>) -> CheckResult {
-    let from = |origin: Vec3, direction| TriangleQuery { ray: Ray::new(origin, direction), triangle: FLAT };
+    let from = |origin: Vec3, direction| TriangleQuery { ray: Ray::new(origin, direction), triangle: UNIT };
     let drawn = [
         from(vec3(0.25, 0.25, 1.0), Vec3::NEG_Z),
         from(vec3(0.25, 0.25, -1.0), Vec3::Z),
@@ -100,9 +98,9 @@ pub(super) fn backfacing_is_false_for_what_is_seen_edge_on(trial: &Trial<'_>) ->
     let line = Triangle { a: Vec3::ZERO, b: Vec3::X, c: 2.0 * Vec3::X };
     let point = Triangle { a: Vec3::ONE, b: Vec3::ONE, c: Vec3::ONE };
     let cases = [
-        (FLAT, Vec3::X),
-        (FLAT, vec3(-3.0, 2.0, 0.0)),
-        (FLAT, vec3(1.0, 0.0, -0.0)),
+        (UNIT, Vec3::X),
+        (UNIT, vec3(-3.0, 2.0, 0.0)),
+        (UNIT, vec3(1.0, 0.0, -0.0)),
         // The normal of the slanted triangle is (2, 1, 2).
         (slanted, vec3(1.0, -2.0, 0.0)),
         (slanted, vec3(1.0, 2.0, -2.0)),
@@ -110,9 +108,9 @@ pub(super) fn backfacing_is_false_for_what_is_seen_edge_on(trial: &Trial<'_>) ->
         (slanted, vec3(1.0, 2.0, -2.5)),
         (line, Vec3::Z),
         (point, Vec3::Z),
-        (FLAT, Vec3::Z),
-        (FLAT, vec3(1.0, 1.0, 2f32.powi(-14))),
-        (FLAT, vec3(1.0, 1.0, -(2f32.powi(-14)))),
+        (UNIT, Vec3::Z),
+        (UNIT, vec3(1.0, 1.0, 2f32.powi(-14))),
+        (UNIT, vec3(1.0, 1.0, -(2f32.powi(-14)))),
     ];
     let queries = cases.map(|(triangle, direction)| TriangleQuery {
         ray: Ray::new(vec3(0.25, 0.25, -1.0), direction),
@@ -127,13 +125,12 @@ pub(super) fn backfacing_is_false_for_what_is_seen_edge_on(trial: &Trial<'_>) ->
 pub(super) fn backfacing_has_no_smallest_size(trial: &Trial<'_>) -> CheckResult {
     let inputs =
         (ordinary(), nasty::scale(-66..=60), nasty::scale(-40..=40)).prop_map(|(query, size, length)| {
-            let Triangle { a, b, c } = query.triangle;
-            let triangle = Triangle { a: size * a, b: size * b, c: size * c };
-            TriangleQuery { ray: Ray::new(size * query.ray.origin, length * query.ray.direction), triangle }
+            let ray = Ray::new(size * query.ray.origin, length * query.ray.direction);
+            TriangleQuery { ray, triangle: scaled(query.triangle, size) }
         });
-    let sized = |size: f32, direction| {
-        let triangle = Triangle { a: Vec3::ZERO, b: size * Vec3::X, c: size * Vec3::Y };
-        TriangleQuery { ray: Ray::new(Vec3::ZERO, direction), triangle }
+    let sized = |size: f32, direction| TriangleQuery {
+        ray: Ray::new(Vec3::ZERO, direction),
+        triangle: scaled(UNIT, size),
     };
     let drawn = [1.0, 2f32.powi(-66), 2f32.powi(66)];
     let drawn = drawn.map(|size| [sized(size, Vec3::Z), sized(size, Vec3::NEG_Z)]);

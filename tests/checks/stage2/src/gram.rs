@@ -1,6 +1,6 @@
 //! The four scalars of the Gram method.
 
-use checks::generate::triangle;
+use checks::generate::{scaled, triangle};
 use checks::prelude::*;
 
 /// The scalars and their largest rounding errors.
@@ -90,6 +90,6 @@ pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) 
     ];
     // D grows with the fourth power of the size, which must stay a normal number.
     let sized = (prop_oneof![triangle(), thin], nasty::scale(-12..=24))
-        .prop_map(|(Triangle { a, b, c }, size)| Triangle { a: size * a, b: size * b, c: size * c });
+        .prop_map(|(triangle, size)| scaled(triangle, size));
     trial.each_and(&drawn, 2000, sized, <dyn Kit>::gram_scalars, judge)
 }

@@ -1,10 +1,12 @@
 //! Ray-triangle intersection: each check for all three methods.
 
-use super::method::{TriangleFunction, aimed, describe};
-use checks::generate::{self, triangle};
+use super::method::{TriangleFunction, aimed};
+use checks::double::{Tolerant, TriangleExpected};
+use checks::generate::{self, scaled, triangle};
 use checks::prelude::*;
 
-const UNIT: Triangle = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
+/// A triangle in the plane z = 0 whose front is the side of +z.
+pub(super) const UNIT: Triangle = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
 
 pub(super) fn triangle_agrees(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     // Begin with simple rays at a simple triangle, because their messages are the easiest to read.
@@ -101,16 +103,14 @@ pub(super) fn triangle_in_range(trial: &Trial<'_>, method: TriangleFunction) -> 
 
 /// Asks again with ranges that end exactly at the answer, one float before it and one float behind it.
 fn judge_ends(trial: &Trial<'_>, method: TriangleFunction, queries: &[TriangleQuery]) -> Vec<CheckResult> {
-    let answers = (method.ask)(trial.kit, queries);
-    let mut outcomes = vec![Ok(()); queries.len()];
-    for (i, (query, hit)) in queries.iter().zip(answers).enumerate() {
-        let Some(hit) = hit.filter(|hit| query.ray.contains(hit.t)) else { continue };
+    let judge = |(query, hit): (&TriangleQuery, Option<TriangleHit>)| {
+        let Some(hit) = hit.filter(|hit| query.ray.contains(hit.t)) else { return Ok(()) };
         let cases = nasty::ranges(hit.t).map(|((t_min, t_max), counts)| {
             (TriangleQuery { ray: query.ray.with_range(t_min, t_max), ..*query }, counts.then_some(hit))
         });
-        outcomes[i] = method.judge_exact(trial, &cases);
-    }
-    outcomes
+        method.judge_exact(trial, &cases)
+    };
+    queries.iter().zip((method.ask)(trial.kit, queries)).map(judge).collect()
 }
 
 pub(super) fn triangle_edges(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
@@ -153,9 +153,9 @@ pub(super) fn triangle_edges(trial: &Trial<'_>, method: TriangleFunction) -> Che
 pub(super) fn triangle_sizes(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     let factors = (nasty::scale(-24..=24), nasty::scale(-16..=16));
     let inputs = (aimed(triangle(), point(8)), factors).prop_map(|(query, (size, length))| {
-        let TriangleQuery { ray, triangle: Triangle { a, b, c } } = query;
+        let TriangleQuery { ray, triangle } = query;
         let ray = Ray { origin: size * ray.origin, direction: length * ray.direction, ..ray };
-        TriangleQuery { ray, triangle: Triangle { a: size * a, b: size * b, c: size * c } }
+        TriangleQuery { ray, triangle: scaled(triangle, size) }
     });
     trial.forall(3000, inputs, |queries| method.judge(trial, queries))
 }
@@ -205,8 +205,8 @@ pub(super) fn triangle_missed(trial: &Trial<'_>, method: TriangleFunction) -> Ch
         if yours.is_none_or(|hit| hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) {
             return Ok(());
         }
-        let finite = "None, or finite numbers";
-        let broken = Broken::with_texts(query.call(method.name), describe(yours), finite, "the definition");
-        Err(broken.because("NaN is never a hit: compare so that NaN fails"))
+        let (yours, finite) = (TriangleExpected::words_of(yours), "None, or finite numbers");
+        Err(Broken::with_texts(query.call(method.name), yours, finite, "the definition")
+            .because("NaN is never a hit: compare so that NaN fails"))
     }))
 }

@@ -42,14 +42,10 @@ impl TriangleFunction {
     }
 
     fn compare(self, trial: &Trial<'_>, cases: &[Case], source: &'static str) -> Vec<CheckResult> {
-        let queries: Vec<TriangleQuery> = cases.iter().map(|case| case.0).collect();
-        let broken = |query: &TriangleQuery, yours, expected| {
-            Broken::with_texts(query.call(self.name), describe(yours), expected, source)
-        };
         // With wrong scalars of a triangle no answer proves a mistake in the intersection. They are asked for after a wrong answer
         // only.
         let proves = LazyCell::new(|| {
-            let triangles: Vec<Triangle> = queries.iter().map(|query| query.triangle).collect();
+            let triangles: Vec<Triangle> = cases.iter().map(|(query, _)| query.triangle).collect();
             self.name != "triangle_gram" || own_scalars_are_right(trial, &triangles)
         });
         let observed =
@@ -58,14 +54,9 @@ impl TriangleFunction {
             let refuted = |(gives, text)| (gives && (is_right || *proves), text);
             mistakes(query, yours, is_right).into_iter().map(refuted).collect()
         };
-        compare_tolerant(cases, (self.ask)(trial.kit, &queries), broken, observed, computed)
+        let ask = |queries: &[TriangleQuery]| (self.ask)(trial.kit, queries);
+        compare_tolerant(cases, (self.name, source), ask, observed, computed)
     }
-}
-
-pub(super) fn describe(hit: Option<TriangleHit>) -> String {
-    hit.map_or("None".into(), |hit| {
-        format!("t = {:?}, beta = {:?}, gamma = {:?}", hit.t, hit.beta, hit.gamma)
-    })
 }
 
 /// Rays that are aimed at a point `(β, γ)` in the plane of a triangle, inside or outside of it.

@@ -1,6 +1,6 @@
 //! Boxes: bounds of triangles and spheres, union, centroid, surface area.
 
-use checks::generate::{sphere, triangle};
+use checks::generate::{scaled, sphere, triangle};
 use checks::prelude::*;
 use checks::{double, tree};
 
@@ -14,17 +14,12 @@ const MIXED: &str =
     "one side of your box takes min of two corners and max with the third, or the other way round";
 
 pub(super) fn bounds_of_a_triangle_are_tight(trial: &Trial<'_>) -> CheckResult {
-    let sized = (triangle(), nasty::any_scale()).prop_map(|(t, size)| Triangle {
-        a: size * t.a,
-        b: size * t.b,
-        c: size * t.c,
-    });
+    let sized = (triangle(), nasty::any_scale()).prop_map(|(triangle, size)| scaled(triangle, size));
     trial.each(1000, sized, <dyn Kit>::triangle_bounds, |triangle, yours| {
         let corner = |p: Vec3| Aabb::new(p, p);
-        let expected = tree::around(&[corner(triangle.a), corner(triangle.b), corner(triangle.c)]);
-        let input = || call("triangle_bounds", &[triangle]);
         let two = |p: Vec3, q: Vec3| tree::around(&[corner(p), corner(q)]);
         let Triangle { a, b, c } = *triangle;
+        let expected = tree::around(&[corner(a), corner(b), corner(c)]);
         let pairs = [two(a, b), two(b, c), two(c, a)];
         let absolute = tree::around(&[two(a.abs(), b.abs()), corner(c.abs())]);
         let mut mistakes = Vec::from(
@@ -44,7 +39,8 @@ pub(super) fn bounds_of_a_triangle_are_tight(trial: &Trial<'_>) -> CheckResult {
         let one_side = "your box leaves out a corner on one side: min and max need all three";
         mistakes.extend(pairs.map(|pair| (yours == Aabb::new(expected.min, pair.max), one_side)));
         mistakes.extend(pairs.map(|pair| (yours == Aabb::new(pair.min, expected.max), one_side)));
-        unless(yours == expected, || Broken::new(input(), yours, expected, "closed form")).formulas(mistakes)
+        let broken = || Broken::new(call("triangle_bounds", &[triangle]), yours, expected, "closed form");
+        unless(yours == expected, broken).formulas(mistakes)
     })
 }
 
@@ -65,7 +61,6 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> CheckResult {
         let is_near = near(yours.min, center - radius) && near(yours.max, center + radius);
         let right = is_near && yours.contains_box(&least);
         let expected = Aabb::new((center - radius).as_vec3(), (center + radius).as_vec3());
-        let input = || call("sphere_bounds", &[sphere]);
         let is = |low: DVec3, high: DVec3| near(yours.min, low) && near(yours.max, high);
         // A box that is larger on each side by the same length, or by the same part of the radius.
         let (low, high) = (center - radius - yours.min.as_dvec3(), yours.max.as_dvec3() - center - radius);
@@ -73,7 +68,7 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> CheckResult {
         let is_padded =
             (low - pad).abs().max((high - pad).abs()).cmple(slack.max_element() + 1e-3 * pad).all();
         let broken = || {
-            Broken::new(input(), yours, expected, "closed form").explained_by([
+            Broken::new(call("sphere_bounds", &[sphere]), yours, expected, "closed form").explained_by([
                 "your sides are rounded towards the centre: move them outwards, or not at all".when(is_near),
                 "you pad the box: one radius from the centre is enough, up to rounding".when(is_padded),
             ])
@@ -139,8 +134,8 @@ pub(super) fn centroid_is_the_middle(trial: &Trial<'_>) -> CheckResult {
     trial.each(1000, sized, <dyn Kit>::centroid, |bounds, yours| {
         // Exact, because all coordinates are multiples of 1/8 times a power of two.
         let expected = 0.5 * (bounds.min + bounds.max);
-        let input = || call("centroid", &[bounds]);
-        unless(yours == expected, || Broken::new(input(), yours, expected, "closed form")).formulas([
+        let broken = || Broken::new(call("centroid", &[bounds]), yours, expected, "closed form");
+        unless(yours == expected, broken).formulas([
             (yours == bounds.min + bounds.max, "you return min + max, not halved"),
             (yours == 0.5 * (bounds.max - bounds.min), "you return half the size of the box, not its middle"),
             (yours == bounds.max - bounds.min, "you return the size of the box, not its middle"),

@@ -84,8 +84,7 @@ fn judge_groups(trial: &Trial<'_>, query: &BuildQuery) -> CheckResult {
             "{n} primitives, for which your split_surface_area gives {:?}, become {yours}",
             own.middle
         );
-        Err(Broken::with_texts(query.call("build"), yours, expected, "the definition")
-            .explained_by([(true, rule)]))
+        Err(Broken::with_texts(query.call("build"), yours, expected, "the definition").because(rule))
     };
     let answers = trial.kit.split(&groups);
     all_hold(nodes.iter().zip(&groups).zip(answers).map(judge).collect())

@@ -1,6 +1,6 @@
 //! The cheapest cut of the surface area heuristic, and the mistakes that give a more expensive one.
 
-use super::divided::{Fault, boxes, divided, judge_splits};
+use super::divided::{Fault, boxes, divided, is_as_given, judge_splits};
 use checks::prelude::*;
 use checks::tree;
 use raykata::bvh::{INTERSECTION_COST, PrimitiveRef, TRAVERSAL_COST};
@@ -37,7 +37,7 @@ pub(super) fn surface_area_heuristic_joins_no_side_again(trial: &Trial<'_>) -> C
     let (left, right) = all.order.split_at(all.middle.unwrap_or(0).min(all.order.len()));
     if left.is_empty() || left.iter().any(is_near) == right.iter().any(is_near) {
         let (yours, expected) = (format!("a cut before {:?}", all.middle), "a cut between the two heaps");
-        return Err(Broken::with_texts(input, yours, expected, "the definition").explained_by([]));
+        return Err(Broken::with_texts(input, yours, expected, "the definition"));
     }
     let most = MOST_UNIONS * 2000;
     if all.unions <= most {
@@ -110,14 +110,11 @@ fn with_at_least(fewest: [usize; 2], cost: Cost<'_>) -> impl Fn(&[PrimitiveRef],
 
 /// Wrong costs of a cut, each with whether the search for the cheapest cut gives this one, or a leaf if `middle` is 0.
 fn wrong_costs(ordered: &[PrimitiveRef], middle: usize) -> Vec<(bool, &'static str)> {
-    let bounds = |part: &[PrimitiveRef]| tree::around(part.iter().map(|p| &p.bounds));
-    let area = |part: &[PrimitiveRef]| 2.0 * tree::half_area(&bounds(part));
-    let volume = |part: &[PrimitiveRef]| {
-        let bounds = bounds(part);
-        (bounds.max - bounds.min).as_dvec3().element_product()
-    };
+    let edges = |part: &[PrimitiveRef]| tree::around_all(part).max - tree::around_all(part).min;
+    let area = |part: &[PrimitiveRef]| 2.0 * tree::half_area(&tree::around_all(part));
+    let volume = |part: &[PrimitiveRef]| edges(part).as_dvec3().element_product();
     let n = |part: &[PrimitiveRef]| part.len() as f64;
-    let size = |part: &[PrimitiveRef]| f64::from((bounds(part).max - bounds(part).min).element_sum());
+    let size = |part: &[PrimitiveRef]| f64::from(edges(part).element_sum());
     let (traversal, intersection) = (f64::from(TRAVERSAL_COST), f64::from(INTERSECTION_COST));
     let gives = |cost: Cost<'_>| {
         let least = tree::least_cost(ordered, &AXES, &cost);
@@ -149,7 +146,7 @@ fn wrong_costs(ordered: &[PrimitiveRef], middle: usize) -> Vec<(bool, &'static s
 /// Wrong rules, each with whether it gives this cut, or a leaf if `middle` is 0.
 fn formulas(given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> Vec<(bool, &'static str)> {
     let best = tree::least_cost(ordered, &AXES, &tree::cut_cost);
-    let bounds = tree::around(ordered.iter().map(|p| &p.bounds));
+    let bounds = tree::around_all(ordered);
     let is_leaf_along = |axes: &[usize]| {
         tree::leaf_is_cheaper(ordered, tree::least_cost(ordered, axes, &tree::cut_cost)) != Some(false)
     };
@@ -202,7 +199,6 @@ fn cut_mistakes(
     ordered: &[PrimitiveRef],
     middle: usize,
 ) -> Vec<(bool, &'static str)> {
-    let bounds = |part: &[PrimitiveRef]| tree::around(part.iter().map(|p| &p.bounds));
     let right_cost: Cost<'_> = &tree::cut_cost;
     // Whether this cut is the best one along these axes by this cost, among the cuts that leave so many on either side.
     let is_least_of = |axes: &[usize], cost: Cost<'_>, fewest: [usize; 2]| {
@@ -212,9 +208,7 @@ fn cut_mistakes(
     };
     let is_best_along =
         |axis: usize| divided(ordered, middle, axis) && is_least_of(&[axis], right_cost, [1, 1]);
-    let as_given = given.iter().map(|p| p.id).eq(ordered.iter().map(|p| p.id));
-    let all = bounds(ordered);
-    let longest = tree::longest_axes(&all);
+    let longest = tree::longest_axes(&tree::around_all(ordered));
     // The least cost of the cuts between so many equal bins of centroids, along all axes.
     let binned = |n: f32| {
         let cost = |axis: usize, cut: f32| {
@@ -234,7 +228,7 @@ fn cut_mistakes(
             .when((yours / binned(n) - 1.0).abs() < 1e-4)
     });
     let others = named![
-        as_given => "the primitives are not sorted: you cut them as they come",
+        is_as_given(given, ordered) => "the primitives are not sorted: you cut them as they come",
         is_best_along(0) => ONLY_ONE,
         is_best_along(1) => ONLY_Y,
         is_best_along(2) => ONLY_Z,

@@ -55,16 +55,7 @@ pub(super) fn judge_splits(
                     .when(twice && ids.len() == n),
             ]));
         }
-        let Some(middle) = middle else {
-            return match law(&query.primitives, &query.primitives, 0) {
-                None => Ok(()),
-                Some((_, expected, mistakes)) => {
-                    Err(Broken::with_texts(input, "None, a leaf", expected, "brute force")
-                        .explained_by(mistakes))
-                }
-            };
-        };
-        if middle == 0 || middle >= n {
+        if let Some(middle) = middle.filter(|&middle| middle == 0 || middle >= n) {
             let broken = Broken::with_texts(
                 input,
                 format!("{middle} left, {} right", n - middle.min(n)),
@@ -72,23 +63,23 @@ pub(super) fn judge_splits(
                 "otherwise the build never ends",
             );
             // Whether all centroids are on one side of the middle of the box, or on it.
-            let all = tree::around(query.primitives.iter().map(|p| &p.bounds));
+            let all = tree::around_all(&query.primitives);
             let one_side = tree::longest_axes(&all).into_iter().any(|axis| {
-                let cut = 0.5 * (all.min[axis] + all.max[axis]);
-                let slack = 1e-5 * (all.max[axis] - all.min[axis]);
-                query.primitives.iter().all(|p| p.centroid[axis] <= cut + slack)
-                    || query.primitives.iter().all(|p| p.centroid[axis] >= cut - slack)
+                let (cut, size) = (0.5 * (all.min[axis] + all.max[axis]), all.max[axis] - all.min[axis]);
+                [0, n].into_iter().any(|middle| is_cut_at(&query.primitives, middle, axis, cut, size))
             });
             return Err(broken.explained_by([
                 "all centroids are on one side of the cut: fall back on another split".when(one_side),
             ]));
         }
-        match law(&query.primitives, &in_order(query, &order), middle) {
-            None => Ok(()),
-            Some((yours, expected, mistakes)) => {
-                Err(Broken::with_texts(input, yours, expected, "brute force").explained_by(mistakes))
-            }
-        }
+        let fault = match middle {
+            Some(middle) => law(&query.primitives, &in_order(query, &order), middle),
+            None => law(&query.primitives, &query.primitives, 0)
+                .map(|(_, expected, mistakes)| ("None, a leaf".into(), expected, mistakes)),
+        };
+        fault.map_or(Ok(()), |(yours, expected, mistakes)| {
+            Err(Broken::with_texts(input, yours, expected, "brute force").explained_by(mistakes))
+        })
     };
     compare_formulas(
         &queries,
@@ -123,9 +114,20 @@ pub(super) fn divided_by(
 /// Axes along which a median split may cut: the longest axes of the box around all boxes, and of the box around all
 /// centroids.
 pub(super) fn split_axes(primitives: &[PrimitiveRef]) -> Vec<usize> {
-    let all = tree::around(primitives.iter().map(|p| &p.bounds));
-    let centroids: Vec<Aabb> = primitives.iter().map(|p| Aabb::new(p.centroid, p.centroid)).collect();
-    let mut axes = tree::longest_axes(&all);
-    axes.extend(tree::longest_axes(&tree::around(&centroids)));
-    axes
+    let boxes = [tree::around_all(primitives), tree::around_centroids(primitives)];
+    boxes.iter().flat_map(tree::longest_axes).collect()
+}
+
+/// Whether the primitives have kept their order.
+pub(super) fn is_as_given(given: &[PrimitiveRef], ordered: &[PrimitiveRef]) -> bool {
+    given.iter().map(|p| p.id).eq(ordered.iter().map(|p| p.id))
+}
+
+/// Whether the centroids before `middle` are below this cut and the others above it, in a box of this size. A centroid that is on
+/// the cut, up to a rounding, may go to either side.
+pub(super) fn is_cut_at(ordered: &[PrimitiveRef], middle: usize, axis: usize, cut: f32, size: f32) -> bool {
+    let slack = 1e-5 * size;
+    let left = ordered[..middle].iter().all(|p| p.centroid[axis] <= cut + slack);
+    let right = ordered[middle..].iter().all(|p| p.centroid[axis] >= cut - slack);
+    left && right
 }

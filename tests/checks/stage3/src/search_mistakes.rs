@@ -157,11 +157,6 @@ pub(super) fn mistakes(query: &SearchQuery, yours: Hit) -> Vec<(bool, &'static s
     MISTAKES.map(|(wrong, text)| (yours == found_by(wrong, query), text)).into()
 }
 
-/// The number of nodes.
-pub(super) fn every_node(query: &SearchQuery) -> u64 {
-    query.bvh.nodes.len() as u64
-}
-
 /// All known mistakes of a search for any hit, each with whether it gives this answer.
 pub(super) fn any_mistakes(query: &SearchQuery, yours: bool) -> Vec<(bool, &'static str)> {
     let with_range = |t_min: f32, t_max: f32| {

@@ -51,13 +51,9 @@ impl Tolerant<Option<(f32, f32)>> for Slab {
 }
 
 fn judge_cases(trial: &Trial<'_>, cases: &[(SlabQuery, Slab)], source: &'static str) -> Vec<CheckResult> {
-    let queries: Vec<SlabQuery> = cases.iter().map(|case| case.0).collect();
-    let broken = |query: &SlabQuery, yours, expected| {
-        Broken::with_texts(query.call("slab"), format!("{yours:?}"), expected, source)
-    };
     let only_verdict = matches!(cases, [(_, Slab::Verdict(_)), ..]);
     let formulas = |query: &SlabQuery, yours, _| mistakes(query, yours, only_verdict);
-    compare_tolerant(cases, trial.kit.slab(&queries), broken, observations, formulas)
+    compare_tolerant(cases, ("slab", source), |queries| trial.kit.slab(queries), observations, formulas)
 }
 
 fn judge_slabs(trial: &Trial<'_>, queries: &[SlabQuery]) -> Vec<CheckResult> {

@@ -1,6 +1,6 @@
 //! The two median splits, and boxes with which every split must work.
 
-use super::divided::{Fault, boxes, divided, divided_by, judge_splits, split_axes};
+use super::divided::{Fault, boxes, divided, divided_by, is_as_given, is_cut_at, judge_splits, split_axes};
 use super::slabs::UNIT_BOX;
 use checks::prelude::*;
 use checks::tree;
@@ -9,8 +9,7 @@ use raykata::scene::Split;
 
 /// `None` where a median split always returns a cut.
 fn no_cut() -> Fault {
-    let always = "a median split always returns a cut";
-    (String::new(), format!("a cut: {always}"), vec![])
+    (String::new(), "a cut: a median split always returns a cut".into(), vec![])
 }
 
 const ELSEWHERE: &str = "you cut at another part of the axis: cut in the middle of the box";
@@ -47,11 +46,8 @@ pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> CheckResult
             Some((yours, expected, mistakes))
         };
         let formulas = |given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize| {
-            let as_given = given.iter().map(|p| p.id).eq(ordered.iter().map(|p| p.id));
-            let shortest = |axis: usize| {
-                let all = tree::around(ordered.iter().map(|p| &p.bounds));
-                (all.max - all.min)[axis] <= (all.max - all.min).min_element()
-            };
+            let all = tree::around_all(ordered);
+            let shortest = |axis: usize| (all.max - all.min)[axis] <= (all.max - all.min).min_element();
             let along = |axis: usize| divided(ordered, middle, axis);
             let axes = split_axes(ordered);
             let by = |key: fn(&PrimitiveRef, usize) -> f32| {
@@ -62,7 +58,7 @@ pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> CheckResult
                 by(|p, axis| p.bounds.max[axis]) => BY_HIGH,
                 by(|p, _| p.centroid.length()) => "you sort by the distance from the origin: sort by the centroid along the axis",
                 by(|p, axis| (p.bounds.max - p.bounds.min)[axis]) => "you sort by the size of the boxes: sort by the centroid",
-                as_given => "the primitives are not sorted: you cut them as they come",
+                is_as_given(given, ordered) => "the primitives are not sorted: you cut them as they come",
                 along(0) => "you sort along x also where another axis is longer",
                 along(1) => "you sort along y also where another axis is longer",
                 along(2) => "you sort along z also where another axis is longer",
@@ -71,15 +67,6 @@ pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> CheckResult
         };
         judge_splits(trial, Split::ObjectMedian, sets, law, formulas)
     })
-}
-
-/// Whether the centroids before `middle` are below the middle of this box and the others above it. A centroid that is on the
-/// cut, up to a rounding, may go to either side.
-fn is_cut_at(ordered: &[PrimitiveRef], middle: usize, axis: usize, cut: f32, size: f32) -> bool {
-    let slack = 1e-5 * size;
-    let left = ordered[..middle].iter().all(|p| p.centroid[axis] <= cut + slack);
-    let right = ordered[middle..].iter().all(|p| p.centroid[axis] >= cut - slack);
-    left && right
 }
 
 pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResult {
@@ -92,9 +79,7 @@ pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResul
             if middle == 0 {
                 return Some(no_cut());
             }
-            let all = tree::around(ordered.iter().map(|p| &p.bounds));
-            let centroids: Vec<Aabb> = ordered.iter().map(|p| Aabb::new(p.centroid, p.centroid)).collect();
-            let of_centroids = tree::around(&centroids);
+            let all = tree::around_all(ordered);
             let some_cut = |bounds: &Aabb| {
                 tree::longest_axes(bounds).into_iter().any(|axis| fits(ordered, middle, bounds, axis))
             };
@@ -104,7 +89,7 @@ pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResul
                 ordered.iter().any(|p| p.centroid[axis] < cut)
                     && ordered.iter().any(|p| p.centroid[axis] > cut)
             });
-            if !divides || some_cut(&all) || some_cut(&of_centroids) {
+            if !divides || some_cut(&all) || some_cut(&tree::around_centroids(ordered)) {
                 return None;
             }
             let axes = tree::longest_axes(&all);
@@ -114,7 +99,7 @@ pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResul
             Some(("a cut elsewhere".into(), expected, mistakes))
         };
         let formulas = |given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize| {
-            let all = tree::around(ordered.iter().map(|p| &p.bounds));
+            let all = tree::around_all(ordered);
             let (axes, n) = (tree::longest_axes(&all), ordered.len());
             let fits = |axis: usize| fits(ordered, middle, &all, axis);
             let at_the_mean = |axis: usize| {
@@ -122,11 +107,10 @@ pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResul
                 is_cut_at(ordered, middle, axis, mean, all.max[axis] - all.min[axis])
             };
             let halves = middle == n / 2 || middle == n.div_ceil(2);
-            let as_given = given.iter().map(|p| p.id).eq(ordered.iter().map(|p| p.id));
             let is_counted_only = axes.iter().any(|&axis| {
                 let cut = 0.5 * (all.min[axis] + all.max[axis]);
                 let n_left = ordered.iter().filter(|p| p.centroid[axis] < cut).count();
-                (as_given && middle == n_left) || n_left == 0 || n_left == n
+                (is_as_given(given, ordered) && middle == n_left) || n_left == 0 || n_left == n
             });
             // A cut elsewhere, by the sides or the centroids of the boxes. If all are on one side of it, any split is right.
             let cut = |key: fn(&PrimitiveRef, usize) -> f32, cut: &dyn Fn(f32, f32) -> f32| {

@@ -73,12 +73,8 @@ pub(super) fn shading_normal_falls_back_to_flat(trial: &Trial<'_>) -> CheckResul
                 let (n, unit) = (normal.as_dvec3().normalize(), yours.as_dvec3().normalize());
                 let parallel =
                     n.cross(unit).length() < 1e-4 || unit.cross(geometric.as_dvec3()).length() < 1e-4;
-                let expected = n.as_vec3();
-                return if parallel {
-                    Ok(())
-                } else {
-                    Err(Broken::new(paste_normal_query(query), yours, expected, "closed form"))
-                };
+                let broken = || Broken::new(paste_normal_query(query), yours, n.as_vec3(), "closed form");
+                return if parallel { Ok(()) } else { Err(broken()) };
             }
             let expected = if geometric.dot(direction) > 0.0 { -geometric } else { geometric };
             let grazing = geometric.dot(direction).abs() < 1e-6;

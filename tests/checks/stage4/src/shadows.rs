@@ -100,38 +100,32 @@ fn judge_end(query: &ShadowQuery, ray: &Ray) -> Judged {
     unless(reach < distance && reach >= 0.99 * distance, broken).formulas(subtracted)
 }
 
-/// The start of a shadow ray.
-fn start(query: &ShadowQuery, ray: &Ray) -> Start {
-    Start::new(&query.surface, query.surface.geometric_normal, query.light.direction, ray)
-}
-
-pub(super) fn shadow_ray_leaves_its_own_surface_at_any_scale(trial: &Trial<'_>) -> CheckResult {
-    // The true surface is up to `error` above the point.
+/// Judges the starts of shadow rays. The true surface is up to `error` above the point.
+fn judge_starts(
+    trial: &Trial<'_>,
+    is_right: fn(&Start) -> bool,
+    expected: fn(&Start) -> String,
+) -> CheckResult {
     trial.forall(1000, lit(), |queries| {
         judge_shadow_rays(trial, queries, |query, ray| {
-            let start = start(query, ray);
+            let ShadowQuery { surface, light } = query;
+            let start = Start::new(surface, surface.geometric_normal, light.direction, ray);
             let broken = || {
                 let yours = format!("starts {:.3e} above the point", start.height());
                 let below = "your ray starts below the surface: move to the viewer's side";
-                broken(query, yours, format!("{:.3e} or more", start.least()))
-                    .explained_by([(start.height() < 0.0, below)])
+                broken(query, yours, expected(&start)).explained_by([(start.height() < 0.0, below)])
             };
-            unless(!start.is_too_low(), broken).formulas(start.mistakes())
+            unless(is_right(&start), broken).formulas(start.mistakes())
         })
     })
 }
 
+pub(super) fn shadow_ray_leaves_its_own_surface_at_any_scale(trial: &Trial<'_>) -> CheckResult {
+    judge_starts(trial, |start| !start.is_too_low(), |start| format!("{:.3e} or more", start.least()))
+}
+
 pub(super) fn shadow_ray_sees_what_is_close(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(1000, lit(), |queries| {
-        judge_shadow_rays(trial, queries, |query, ray| {
-            let start = start(query, ray);
-            let broken = || {
-                let yours = format!("starts {:.3e} above the point", start.height());
-                broken(query, yours, format!("at most {:.3e}", start.most()))
-            };
-            unless(!start.is_too_high(), broken).formulas(start.mistakes())
-        })
-    })
+    judge_starts(trial, |start| !start.is_too_high(), |start| format!("at most {:.3e}", start.most()))
 }
 
 pub(super) fn shadow_ray_is_not_traced_without_effect(trial: &Trial<'_>) -> CheckResult {

@@ -8,6 +8,25 @@ use raykata::material::{Fresnel, Material};
 /// Limits that end no ray of these checks.
 pub(super) const FAR: Limits = Limits { max_depth: 100, min_contribution: 0.0 };
 
+/// A ray of weight 1 that enters a surface of this material at an angle, with limits that do not end it.
+pub(super) fn arriving(material: Material) -> ScatterQuery {
+    ScatterQuery {
+        direction: vec3(0.6, -0.8, 0.0),
+        normal: Vec3::Y,
+        entering: true,
+        material,
+        weight: Vec3::ONE,
+        depth: 0,
+        limits: FAR,
+    }
+}
+
+/// A material without colour.
+pub(super) fn grey(mirror: f32, transmission: f32) -> Material {
+    let [mirror, transmission] = [mirror, transmission].map(Vec3::splat);
+    Material { mirror, transmission, ..Material::default() }
+}
+
 pub(super) fn paste(query: &ScatterQuery) -> String {
     let ScatterQuery { entering, depth, material: Material { mirror, transmission, .. }, .. } = query;
     format!("scatter, entering: {entering}, depth {depth}, mirror {mirror}, transmission {transmission}")
@@ -42,12 +61,12 @@ pub(super) fn refract_query(query: &ScatterQuery) -> RefractQuery {
     RefractQuery { direction: query.direction, normal: query.normal, n1, n2 }
 }
 
-/// The Fresnel reflectance in double precision.
-fn reflectance(query: &ScatterQuery) -> f64 {
+/// The Fresnel reflectance that the material asks for: 0, or one of these two.
+fn reflectance(query: &ScatterQuery, schlick: f64, exact: f64) -> f64 {
     match query.material.fresnel {
         Fresnel::None => 0.0,
-        Fresnel::Schlick => schlick(&fresnel_query(query)),
-        Fresnel::Exact => exact(&fresnel_query(query)),
+        Fresnel::Schlick => schlick,
+        Fresnel::Exact => exact,
     }
 }
 
@@ -68,11 +87,7 @@ fn own_functions(trial: &Trial<'_>, queries: &[ScatterQuery]) -> Vec<Own> {
     let (schlick, exact) = (trial.kit.fresnel_schlick(&fresnel), trial.kit.fresnel_exact(&fresnel));
     let (refracted, reflected) = (trial.kit.refract(&refractions), trial.kit.reflect(&reflections));
     let own = |index: usize| Own {
-        reflectance: match queries[index].material.fresnel {
-            Fresnel::None => 0.0,
-            Fresnel::Schlick => f64::from(schlick[index]),
-            Fresnel::Exact => f64::from(exact[index]),
-        },
+        reflectance: reflectance(&queries[index], schlick[index].into(), exact[index].into()),
         refracted: refracted[index],
         reflected: reflected[index],
     };
@@ -83,21 +98,10 @@ pub(super) fn queries() -> impl Strategy<Value = ScatterQuery> + Clone {
     let fresnel = prop::sample::select(vec![Fresnel::None, Fresnel::Schlick, Fresnel::Exact]);
     (arrival(), any::<bool>(), point(1), point(1), fractions(4..=16, 8.0), fresnel, point(1)).prop_map(
         |((direction, normal), entering, mirror, transmission, index_of_refraction, fresnel, weight)| {
-            ScatterQuery {
-                direction,
-                normal,
-                entering,
-                material: Material {
-                    mirror: mirror.abs(),
-                    transmission: transmission.abs(),
-                    index_of_refraction,
-                    fresnel,
-                    ..Material::default()
-                },
-                weight: weight.abs(),
-                depth: 0,
-                limits: FAR,
-            }
+            let [mirror, transmission, weight] = [mirror, transmission, weight].map(Vec3::abs);
+            let material =
+                Material { mirror, transmission, index_of_refraction, fresnel, ..Material::default() };
+            ScatterQuery { direction, normal, entering, weight, ..arriving(material) }
         },
     )
 }
@@ -124,12 +128,14 @@ fn judge_with_own(
 pub(super) fn drawn() -> [ScatterQuery; 3] {
     let query = |mirror: Vec3, transmission: Vec3, fresnel: Fresnel| ScatterQuery {
         direction: vec3(0.96, -0.28, 0.0),
-        normal: Vec3::Y,
-        entering: true,
-        material: Material { mirror, transmission, index_of_refraction: 1.5, fresnel, ..Material::default() },
         weight: vec3(0.5, 0.75, 0.25),
-        depth: 0,
-        limits: FAR,
+        ..arriving(Material {
+            mirror,
+            transmission,
+            index_of_refraction: 1.5,
+            fresnel,
+            ..Material::default()
+        })
     };
     [
         query(vec3(0.25, 0.375, 0.5), vec3(0.5, 0.25, 0.125), Fresnel::Exact),
@@ -144,7 +150,9 @@ fn judge_weights(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) -> Ju
     let [weight, mirror, transmission] =
         [query.weight, query.material.mirror, query.material.transmission].map(Vec3::as_dvec3);
     let weights = |f: f64| [weight * (mirror + f * transmission), weight * (1.0 - f) * transmission];
-    let share = reflectance(query);
+    let asked = fresnel_query(query);
+    let (by_schlick, by_exact) = (schlick(&asked), exact(&asked));
+    let share = reflectance(query, by_schlick, by_exact);
     let expected = weights(share);
     let found = [Bounce::Reflection, Bounce::Transmission]
         .map(|bounce| find(&yours, bounce).map(|child| child.weight.as_dvec3()));
@@ -165,19 +173,14 @@ fn judge_weights(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) -> Ju
     // Schlick's approximation always, the exact formula always, and each in place of the other.
     let other_fresnel = match query.material.fresnel {
         Fresnel::None => [0.0; 3],
-        Fresnel::Schlick => [share, exact(&fresnel_query(query)), exact(&fresnel_query(query))],
-        Fresnel::Exact => [schlick(&fresnel_query(query)), share, schlick(&fresnel_query(query))],
+        Fresnel::Schlick => [share, by_exact, by_exact],
+        Fresnel::Exact => [by_schlick, share, by_schlick],
     };
     let of_fresnel = other_fresnel.map(|share| {
         (is(weights(share)), "you use the other Fresnel formula: Schlick for Schlick, Exact for Exact")
     });
-    let turned =
-        FresnelQuery { n1: fresnel_query(query).n2, n2: fresnel_query(query).n1, ..fresnel_query(query) };
-    let exchanged = match query.material.fresnel {
-        Fresnel::None => 0.0,
-        Fresnel::Schlick => schlick(&turned),
-        Fresnel::Exact => exact(&turned),
-    };
+    let turned = FresnelQuery { n1: asked.n2, n2: asked.n1, ..asked };
+    let exchanged = reflectance(query, schlick(&turned), exact(&turned));
     // The rays of which no channel is 0.
     let coloured = expected.map(|weight| if weight.min_element() <= 0.0 { DVec3::ZERO } else { weight });
     let broken = || {
@@ -284,18 +287,8 @@ pub(super) fn scatter_refracts_nothing_in_total_reflection(trial: &Trial<'_>) ->
     // 60° inside glass. No ray is refracted, and 0 · NaN makes no NaN.
     let chosen = [Fresnel::None, Fresnel::Schlick, Fresnel::Exact].map(|fresnel| ScatterQuery {
         direction: vec3(0.866_025_4, -0.5, 0.0),
-        normal: Vec3::Y,
         entering: false,
-        material: Material {
-            mirror: Vec3::splat(0.25),
-            transmission: Vec3::splat(0.75),
-            index_of_refraction: 1.5,
-            fresnel,
-            ..Material::default()
-        },
-        weight: Vec3::ONE,
-        depth: 0,
-        limits: FAR,
+        ..arriving(Material { index_of_refraction: 1.5, fresnel, ..grey(0.25, 0.75) })
     });
     let beyond =
         queries().prop_filter("beyond the critical angle", |query| snell(&refract_query(query)).1 < -1e-3);
@@ -344,13 +337,10 @@ pub(super) fn scatter_skips_rays_without_weight(trial: &Trial<'_>) -> CheckResul
     let dull = (queries(), 0..4i32).prop_map(|(query, which)| match which {
         0 => ScatterQuery { material: Material::default(), ..query },
         1 => ScatterQuery { weight: Vec3::ZERO, ..query },
-        2 => {
-            // A red ray on a blue mirror: the product is 0.
-            let material = Material { mirror: Vec3::Z, transmission: Vec3::ZERO, ..query.material };
-            ScatterQuery { weight: Vec3::X, material, ..query }
-        }
         _ => {
-            let material = Material { mirror: Vec3::ONE, transmission: Vec3::ZERO, ..query.material };
+            // A red ray on a blue mirror, where the product is 0, or on a white one.
+            let mirror = if which == 2 { Vec3::Z } else { Vec3::ONE };
+            let material = Material { mirror, transmission: Vec3::ZERO, ..query.material };
             ScatterQuery { weight: Vec3::X, material, ..query }
         }
     });

@@ -1,7 +1,7 @@
 //! Whole ray trees, counted in scenes so simple that the number of rays is known.
 
 use super::picture::glass;
-use super::scatter::{FAR, paste};
+use super::scatter::{FAR, arriving, grey, paste};
 use checks::golden::Table;
 use checks::prelude::*;
 use raykata::material::Material;
@@ -10,16 +10,8 @@ use raykata::material::Material;
 const TOO_MANY: usize = 20_000;
 
 /// The number of rays in a closed room in which every ray meets the same surface at the same angle.
-fn rays_in_a_room(trial: &Trial<'_>, material: &Material, limits: Limits) -> (usize, ScatterQuery) {
-    let first = ScatterQuery {
-        direction: vec3(0.6, -0.8, 0.0),
-        normal: Vec3::Y,
-        entering: true,
-        material: material.clone(),
-        weight: Vec3::ONE,
-        depth: 0,
-        limits,
-    };
+fn rays_in_a_room(trial: &Trial<'_>, (mirror, transmission, limits): &Room) -> (usize, ScatterQuery) {
+    let first = ScatterQuery { limits: *limits, ..arriving(grey(*mirror, *transmission)) };
     let mut level = vec![first.clone()];
     let mut rays = 0;
     while !level.is_empty() && rays < TOO_MANY {
@@ -87,14 +79,6 @@ fn count((mirror, transmission, limits): &Room, rule: Rule) -> usize {
 fn judge(trial: &Trial<'_>, rooms: &[Room], allows: impl Fn(&Room, usize) -> bool) -> CheckResult {
     let describe =
         |rays: usize| if rays < TOO_MANY { format!("{rays} rays") } else { "an infinite tree".into() };
-    let grow = |room: &Room| {
-        let material = Material {
-            mirror: Vec3::splat(room.0),
-            transmission: Vec3::splat(room.1),
-            ..Material::default()
-        };
-        rays_in_a_room(trial, &material, room.2)
-    };
     let judge = |room: &Room, (rays, first): (usize, ScatterQuery)| {
         let expected = count(room, RIGHT);
         if rays == expected || allows(room, rays) {
@@ -103,7 +87,7 @@ fn judge(trial: &Trial<'_>, rooms: &[Room], allows: impl Fn(&Room, usize) -> boo
         let input = format!("a closed room, with every secondary ray traced, from\n{}", paste(&first));
         Err(Broken::with_texts(input, describe(rays), describe(expected), "counted"))
     };
-    let answers = rooms.iter().map(grow).collect();
+    let answers = rooms.iter().map(|room| rays_in_a_room(trial, room)).collect();
     all_hold(compare_formulas(rooms, answers, judge, |room, (rays, _)| {
         // A tree that exceeds the limit is infinite by any of the rules that exceed it.
         MISTAKES.map(|(rule, text)| (count(room, rule).min(TOO_MANY) == (*rays).min(TOO_MANY), text)).into()

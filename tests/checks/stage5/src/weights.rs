@@ -1,6 +1,6 @@
 //! The weight that decides whether a secondary ray is traced.
 
-use super::scatter::{FAR, drawn, find, paste, queries};
+use super::scatter::{FAR, drawn, find, grey, paste, queries};
 use checks::prelude::*;
 use raykata::material::{Fresnel, Material};
 
@@ -19,21 +19,15 @@ pub(super) fn scatter_tests_the_weight_of_each_ray(trial: &Trial<'_>) -> CheckRe
     });
     let at = |mirror: f32, transmission: f32, least: f32| ScatterQuery {
         weight: Vec3::ONE,
-        material: Material {
-            mirror: Vec3::splat(mirror),
-            transmission: Vec3::splat(transmission),
-            fresnel: Fresnel::None,
-            ..slanted.material.clone()
-        },
+        material: Material { index_of_refraction: 1.5, fresnel: Fresnel::None, ..grey(mirror, transmission) },
         limits: Limits { min_contribution: least, ..FAR },
         ..slanted.clone()
     };
     let drawn =
         [at(0.25, 0.125, 0.5), at(0.75, 0.25, 0.5), at(0.25, 0.5, 0.5), at(0.5, 0.0, 0.0), at(0.0, 0.5, 0.0)];
     trial.forall_and(&drawn, 1000, queries, |queries| {
-        compare_formulas(queries, trial.kit.scatter(queries), judge_own_weight, |query, yours| {
-            formulas(query, yours)
-        })
+        let formulas = |query: &ScatterQuery, yours: &Vec<_>| formulas(query, yours);
+        compare_formulas(queries, trial.kit.scatter(queries), judge_own_weight, formulas)
     })?;
     // Along the normal Schlick's F is 0.04 for an index of 1.5. The reflected ray has mirror + F transmission.
     let along = [(0.3, 0.5, 0.31), (0.0, 0.5, 0.49), (0.0, 1.0, 0.97), (0.0, 0.5, 0.45), (0.1, 0.5, 0.11)];

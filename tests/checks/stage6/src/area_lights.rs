@@ -1,12 +1,10 @@
 //! Points of area lights.
 
 use super::lens::{is_polar, polar, uneven_disk};
+use super::pixels::LARGEST;
 use checks::prelude::*;
-use checks::statistics::{SAMPLES, columns, covers_each_part, has_mean, pairs};
+use checks::statistics::{SAMPLES, columns, covers_each_part, has_mean, is_of_one_number, pairs};
 use raykata::shape::Disk;
-
-/// The largest random number, just below 1.
-const LARGEST: f32 = 1.0 - f32::EPSILON / 2.0;
 
 /// Random numbers for a statistical test, and the four corners of the unit square, which a test of counts does not notice.
 fn numbers(seed: u64) -> Vec<Vec2> {
@@ -169,29 +167,17 @@ struct Seen {
     local: Vec<DVec3>,
 }
 
-/// How many of these numbers differ by a thousandth.
-pub(super) fn n_thousandths(shares: impl Iterator<Item = f64>) -> usize {
-    shares.map(|share| (share * 1e3) as u64).collect::<std::collections::BTreeSet<u64>>().len()
+/// How many different angles to the axis there are, whose shares come first, up to a thousandth of the distribution.
+pub(super) fn n_angles(shares: &[(f64, f64)]) -> usize {
+    shares.iter().map(|(share, _)| (share * 1e3) as u64).collect::<std::collections::BTreeSet<u64>>().len()
 }
 
 impl Seen {
-    /// How many different angles to the axis there are, of those of the first sphere, up to a thousandth.
-    fn n_angles(&self) -> usize {
-        n_thousandths(self.shares.iter().map(|(share, _)| *share))
-    }
-
     /// What a wrong formula for 1 - cos θ gives: `share` computes it from a random number and that of the rim.
     fn is(&self, below_one: fn(u: f64, rim: f64) -> f64) -> bool {
-        let number = |u: &Vec2, which: usize| match which {
-            0 => f64::from(u.x),
-            1 => f64::from(u.y),
-            2 => 1.0 - f64::from(u.x),
-            _ => 1.0 - f64::from(u.y),
-        };
-        (0..4).any(|which| {
-            let all = self.u.iter().zip(&self.shares).zip(&self.rims);
-            all.clone()
-                .all(|((u, (share, _)), rim)| (share - below_one(number(u, which), *rim) / rim).abs() < 1e-2)
+        let shares = self.shares.iter().zip(&self.rims);
+        is_of_one_number(&self.u, shares, |u, ((share, _), rim)| {
+            (share - below_one(u, *rim) / rim).abs() < 1e-2
         })
     }
 }
@@ -284,7 +270,7 @@ pub(super) fn a_far_sphere_is_still_a_sphere(trial: &Trial<'_>) -> CheckResult {
         has_mean(&format!("sample_sphere from 10,000 radii away, {axis}"), &shares, 0.5, |_| {
             // The formula is right for a near sphere, and gives few angles for a far one.
             let near = seen(trial, &spheres(1.25, &HERE[..1]), &u);
-            let rounded = far.n_angles() <= 8 && near.is_ok_and(|near| near.n_angles() > 500);
+            let rounded = n_angles(&far.shares) <= 8 && near.is_ok_and(|near| n_angles(&near.shares) > 500);
             vec![(rounded, "your 1 - cos θ is rounded: compute it as sin²θ / (1 + cos θ)")]
         })?;
     }

@@ -2,7 +2,9 @@
 
 use super::pixels::unit_number;
 use checks::prelude::*;
-use checks::statistics::{Mistakes, SAMPLES, columns, covers_each_part, is_other_power, pairs};
+use checks::statistics::{
+    Mistakes, SAMPLES, columns, covers_each_part, is_of_one_number, is_other_power, pairs,
+};
 use raykata::camera::{Camera, Lens};
 
 /// The squared distance of a point of the unit disk from the centre, and its angle as a fraction of a full turn.
@@ -13,11 +15,8 @@ pub(super) fn polar(place: Vec2) -> (f64, f64) {
 
 /// Wrong polar coordinates that reproduce all points of the unit disk: which radius and angle they have.
 pub(super) fn is_polar(u: &[Vec2], places: &[Vec2]) -> Mistakes {
-    let number = |u: &Vec2, which: usize| [u.x, u.y, 1.0 - u.x, 1.0 - u.y][which];
-    let radius_is = |radius: fn(f32) -> f32| {
-        (0..4).any(|which| {
-            u.iter().zip(places).all(|(u, place)| (place.length() - radius(number(u, which))).abs() < 1e-3)
-        })
+    let radius_is = |radius: fn(f64) -> f64| {
+        is_of_one_number(u, places.iter(), |u, place| (f64::from(place.length()) - radius(u)).abs() < 1e-3)
     };
     vec![
         "too many points near the centre: your radius is u; use √u, because area grows with its square"
@@ -30,7 +29,7 @@ pub(super) fn is_polar(u: &[Vec2], places: &[Vec2]) -> Mistakes {
                 (*place - by_angle).length() < 1e-3 || (*place - elliptic).length() < 1e-3
             })),
         (radius_is(|u| u * u), "too many points near the centre: your radius is u²; use √u"),
-        (radius_is(f32::cbrt), "too many points near the rim: your radius is ∛u, as in a sphere; use √u"),
+        (radius_is(f64::cbrt), "too many points near the rim: your radius is ∛u, as in a sphere; use √u"),
         (radius_is(|_| 1.0), "too many points near the rim: all of your points are on it"),
         "your radius is another power of a random number: use √u"
             .when(is_other_power(u, &places.iter().map(|place| f64::from(place.length())).collect::<Vec<_>>(), 0.5)),

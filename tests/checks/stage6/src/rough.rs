@@ -1,10 +1,12 @@
 //! Glossy reflection: samples of a Phong lobe.
 
-use super::area_lights::n_thousandths;
+use super::area_lights::n_angles;
 use super::pixels::unit_number;
 use crate::unit_arrival;
 use checks::prelude::*;
-use checks::statistics::{Mistakes, SAMPLES, columns, covers_each_part, has_mean, is_other_power, pairs};
+use checks::statistics::{
+    Mistakes, SAMPLES, columns, covers_each_part, has_mean, is_of_one_number, is_other_power, pairs,
+};
 
 pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> CheckResult {
     // Every fourth surface is rough, and gives another direction than `ideal`.
@@ -47,15 +49,7 @@ struct Lobe {
 impl Lobe {
     /// Whether all cosines are those of a wrong formula.
     fn is(&self, cosine: impl Fn(f64) -> f64) -> bool {
-        let number = |u: &Vec2, which: usize| f64::from([u.x, u.y, 1.0 - u.x, 1.0 - u.y][which]);
-        (0..4).any(|which| {
-            self.u.iter().zip(&self.cosines).all(|(u, found)| (found - cosine(number(u, which))).abs() < 1e-5)
-        })
-    }
-
-    /// How many different angles to `ideal` there are, up to a thousandth of the distribution.
-    fn n_angles(&self) -> usize {
-        n_thousandths(self.shares.iter().map(|(share, _)| *share))
+        is_of_one_number(&self.u, self.cosines.iter(), |u, found| (found - cosine(u)).abs() < 1e-5)
     }
 }
 
@@ -137,14 +131,15 @@ pub(super) fn slightly_rough_is_not_a_few_angles(trial: &Trial<'_>) -> CheckResu
     let (u, axes) = (pairs(trial.seed, SAMPLES), nasty::directions());
     let slight = lobe(trial, 0.001, &axes, &u)?;
     let what = "sample_phong_lobe with roughness 0.001";
-    let n_angles = slight.n_angles();
+    let n_slight = n_angles(&slight.shares);
     // Of a thousand intervals of equal probability a few roundings leave none out.
-    if n_angles < 500 {
-        let yours = format!("angles in {n_angles} of 1,000 intervals of equal probability");
+    if n_slight < 500 {
+        let yours = format!("angles in {n_slight} of 1,000 intervals of equal probability");
         let input = format!("{what} for {SAMPLES} pairs u");
         let broken = Broken::with_texts(input, yours, "in all of them", "the definition");
         // The formula gives many angles for a rough surface, and few for a slightly rough one.
-        let few = n_angles < 64 && lobe(trial, 0.5, &axes, &u).is_ok_and(|rough| rough.n_angles() > 500);
+        let few =
+            n_slight < 64 && lobe(trial, 0.5, &axes, &u).is_ok_and(|rough| n_angles(&rough.shares) > 500);
         let imprecise =
             "your angles take few values: √(1 - cos²) is imprecise; compute 1 - cos θ with exp_m1";
         return Err(broken.explained_by([(few, imprecise)]));
