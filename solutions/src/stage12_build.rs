@@ -265,11 +265,17 @@ pub fn build_parallel(bounds: &[Aabb], forks: &mut Forks) -> FlatTree {
     // waiting.
     let fork_from = FORK_FROM.max(bounds.len() / 128);
 
-    // Reserve what a tree with leaves of three primitives needs, which is usual.
-    let mut nodes = Vec::with_capacity(2 * bounds.len() / 3 + 1);
-    nodes.push(LEAF);
-    nodes[0] = fork_node(&mut primitives, 0, 0, &mut nodes, forks, fork_from);
-    FlatTree { nodes, order: primitives.iter().map(PrimitiveBox::id).collect() }
+    // The root comes first, and is known last.
+    let mut parts = vec![Part { nodes: vec![LEAF], shift: 0 }];
+    parts[0].nodes[0] = fork_node(&mut primitives, 0, 0, &mut parts, forks, fork_from);
+    let order = primitives.iter().map(PrimitiveBox::id).collect();
+    drop(primitives);
+    // Join the arrays.
+    let mut nodes = Vec::with_capacity(n_nodes(&parts));
+    for Part { nodes: part, shift } in parts {
+        nodes.extend(part.into_iter().map(|node| shifted(node, shift)));
+    }
+    FlatTree { nodes, order }
     // <stub> todo!("build as before; where both sides are large, join them by a fork")
     // </solution>
 }
@@ -279,17 +285,37 @@ pub fn build_parallel(bounds: &[Aabb], forks: &mut Forks) -> FlatTree {
 /// time than a fork.
 const FORK_FROM: usize = 2048;
 
-/// The node of [`build_node`]. From `fork_from` primitives on, its two sides are built in parallel.
+/// An array of nodes, which stand side by side in the finished tree.
+struct Part {
+    nodes: Vec<FlatNode>,
+    /// The number of nodes in arrays in front of this one, which its indices do not count.
+    shift: u32,
+}
+
+fn n_nodes(parts: &[Part]) -> usize {
+    parts.iter().map(|part| part.nodes.len()).sum()
+}
+
+/// A node whose children, if it has any, stand further behind.
+fn shifted(mut node: FlatNode, by: u32) -> FlatNode {
+    if !node.is_leaf() {
+        node.first += by;
+    }
+    node
+}
+
+/// The node of [`build_node`]. From `fork_from` primitives on, its two sides are built in parallel:
+/// the left side goes on in the only array so far, the right side begins one of its own.
 fn fork_node(
     primitives: &mut [PrimitiveBox],
     first: u32,
     depth: usize,
-    nodes: &mut Vec<FlatNode>,
+    parts: &mut Vec<Part>,
     forks: &mut Forks,
     fork_from: usize,
 ) -> FlatNode {
     if primitives.len() < fork_from {
-        return build_node(primitives, first, depth, nodes);
+        return build_node(primitives, first, depth, &mut parts[0].nodes);
     }
     // Divide the primitives. So many are never a leaf.
     let fork = Fork { first, count: primitives.len() as u32, kind: ForkKind::Children };
@@ -301,24 +327,21 @@ fn fork_node(
     let (below, above) = primitives.split_at_mut(middle);
     let first_above = first + middle as u32;
 
-    // The left side appends its nodes to this array, the right side to one of its own.
-    let pair = nodes.len();
-    nodes.extend([LEAF, LEAF]);
-    let (left, (mut right, mut nodes_right)) = forks.join(
+    // Build both sides.
+    let pair = parts[0].nodes.len();
+    parts[0].nodes.extend([LEAF, LEAF]);
+    let (left, (right, parts_right)) = forks.join(
         fork,
-        |forks| fork_node(below, first, depth + 1, nodes, forks, fork_from),
+        |forks| fork_node(below, first, depth + 1, parts, forks, fork_from),
         |forks| {
-            let mut nodes = Vec::with_capacity(2 * above.len() / 3 + 1);
-            (fork_node(above, first_above, depth + 1, &mut nodes, forks, fork_from), nodes)
+            let mut parts = vec![Part { nodes: Vec::with_capacity(2 * fork_from / 3), shift: 0 }];
+            (fork_node(above, first_above, depth + 1, &mut parts, forks, fork_from), parts)
         },
     );
-    // Indices start at 0 in the array of the right side: add the number of nodes in front of it.
-    let shift = nodes.len() as u32;
-    for inner in nodes_right.iter_mut().chain([&mut right]).filter(|node| !node.is_leaf()) {
-        inner.first += shift;
-    }
-    nodes.append(&mut nodes_right);
-    (nodes[pair], nodes[pair + 1]) = (left, right);
+    // The arrays of the right side come after those of the left side.
+    let shift = n_nodes(parts) as u32;
+    parts[0].nodes[pair..pair + 2].copy_from_slice(&[left, shifted(right, shift)]);
+    parts.extend(parts_right.into_iter().map(|part| Part { shift: part.shift + shift, ..part }));
     node(&bounds, pair as u32, 0)
 }
 

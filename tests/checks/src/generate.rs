@@ -8,20 +8,28 @@ use raykata::ray::Ray;
 use raykata::shape::{Sphere, Triangle};
 use std::ops::{Range, RangeInclusive};
 
-/// Random numbers from `low` to `high`, which are multiples of `step` if it is not 0.
+/// Random numbers of a range.
 #[derive(Clone, Debug)]
 struct Numbers<S> {
     drawn: S,
+    range: Values,
+}
+
+/// Numbers from `low` to `high`, which are multiples of `step` if it is not 0.
+#[derive(Clone, Copy, Debug)]
+struct Values {
     low: f32,
     high: f32,
     step: f32,
 }
 
-/// A number that was drawn, behind simpler ones. They are tried from the simplest on, until one breaks the law as well.
+/// A number that was drawn. Simpler ones are tried from the simplest on, until one breaks the law as well.
 #[derive(Clone, Debug)]
 struct Number {
-    numbers: Vec<f32>,
-    tried: Option<usize>,
+    drawn: f32,
+    range: Values,
+    /// The place of the simpler number that is tried; the one that was drawn comes behind them.
+    tried: Option<u8>,
 }
 
 impl<S: Strategy<Value = f32>> Strategy for Numbers<S> {
@@ -29,16 +37,22 @@ impl<S: Strategy<Value = f32>> Strategy for Numbers<S> {
     type Value = f32;
 
     fn new_tree(&self, runner: &mut TestRunner) -> NewTree<Self> {
-        let drawn = self.drawn.new_tree(runner)?.current();
-        let size = f64::from(drawn.abs());
+        Ok(Number { drawn: self.drawn.new_tree(runner)?.current(), range: self.range, tried: None })
+    }
+}
+
+impl Number {
+    /// The simpler numbers of the range. They take longer than to draw, and are asked for only if a law is broken.
+    fn simpler(&self) -> Vec<f32> {
+        let size = f64::from(self.drawn.abs());
         let tens = |digits: f64| 10f64.powf(digits - 1.0 - size.log10().floor());
         let digits = |digits: f64| (tens(digits) * size).round() / tens(digits);
         let [ten, half] = [10f64.powf(size.log10().round()), (2.0 * size).round() / 2.0];
         let simple = [0.0, 1.0, 2.0, 3.0, 0.5, ten, digits(1.0), half, digits(2.0), digits(3.0)];
-        let signed = simple.map(|number| drawn.signum() * number as f32 + 0.0).into_iter();
-        let is_on_grid = |number: f32| self.step == 0.0 || number % self.step == 0.0;
-        let simpler = signed.filter(|number| (self.low..=self.high).contains(number) && is_on_grid(*number));
-        Ok(Number { numbers: simpler.chain([drawn]).collect(), tried: None })
+        let signed = simple.map(|number| self.drawn.signum() * number as f32 + 0.0).into_iter();
+        let Values { low, high, step } = self.range;
+        let is_on_grid = |number: f32| step == 0.0 || number % step == 0.0;
+        signed.filter(|number| (low..=high).contains(number) && is_on_grid(*number)).collect()
     }
 }
 
@@ -46,7 +60,8 @@ impl ValueTree for Number {
     type Value = f32;
 
     fn current(&self) -> f32 {
-        self.numbers[self.tried.unwrap_or(self.numbers.len() - 1)]
+        let simpler = self.tried.and_then(|place| self.simpler().get(usize::from(place)).copied());
+        simpler.unwrap_or(self.drawn)
     }
 
     fn simplify(&mut self) -> bool {
@@ -56,7 +71,8 @@ impl ValueTree for Number {
     }
 
     fn complicate(&mut self) -> bool {
-        let next = self.tried.map(|index| index + 1).filter(|index| *index < self.numbers.len());
+        let next =
+            self.tried.map(|place| place + 1).filter(|&next| usize::from(next) <= self.simpler().len());
         self.tried = next.or(self.tried);
         next.is_some()
     }
@@ -65,7 +81,7 @@ impl ValueTree for Number {
 /// A number in this range.
 pub fn number(range: Range<f32>) -> impl Strategy<Value = f32> + Clone {
     let (low, high) = (range.start, range.end.next_down());
-    Numbers { drawn: range, low, high, step: 0.0 }
+    Numbers { drawn: range, range: Values { low, high, step: 0.0 } }
 }
 
 /// A fraction with one of these numerators, such as a number of eighths. Such numbers are short in messages, and sums and products
@@ -73,7 +89,7 @@ pub fn number(range: Range<f32>) -> impl Strategy<Value = f32> + Clone {
 pub fn fractions(numerators: RangeInclusive<i32>, denominator: f32) -> impl Strategy<Value = f32> + Clone {
     let fraction = move |numerator: i32| numerator as f32 / denominator;
     let [low, high] = [fraction(*numerators.start()), fraction(*numerators.end())];
-    Numbers { drawn: numerators.prop_map(fraction), low, high, step: 1.0 / denominator }
+    Numbers { drawn: numerators.prop_map(fraction), range: Values { low, high, step: 1.0 / denominator } }
 }
 
 /// A vector of three such numbers.

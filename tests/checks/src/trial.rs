@@ -167,6 +167,11 @@ impl<'a> Trial<'a> {
         judge: impl Fn(&[S::Value]) -> Vec<CheckResult>,
     ) -> CheckResult {
         let cases = cases.div_ceil(self.inputs.one_in).max(FEWEST_HIDDEN.min(cases));
+        // Ask about one input first: where the function is not written, the others need not be drawn, which takes longest.
+        let first = || Some(inputs.new_tree(&mut self.runner()).ok()?.current());
+        if let Some(first) = chosen.first().cloned().or_else(first) {
+            self.ask_about_one(&|| judge(std::slice::from_ref(&first)));
+        }
         let draw = || {
             let mut runner = self.runner();
             let trees = (0..cases).filter_map(|_| inputs.new_tree(&mut runner).ok());
@@ -206,6 +211,17 @@ impl<'a> Trial<'a> {
         judge: impl Fn(&S::Value, A) -> Result<R, Broken>,
     ) -> CheckResult {
         self.forall_and(chosen, cases, inputs, |queries| compare(queries, ask(self.kit, queries), &judge))
+    }
+
+    /// Ends the check if the function is not written or does not return.
+    fn ask_about_one(&self, judge: &dyn Fn() -> Vec<CheckResult>) {
+        let n_batches = self.calls.batches().len();
+        match kit_error::catch(judge) {
+            Ok(_) | Err(KitError::Panicked { .. } | KitError::Malformed { .. }) => {
+                self.calls.batches().truncate(n_batches);
+            }
+            Err(error) => kit_error::unwind(error),
+        }
     }
 
     /// The part of [`Trial::forall`] that does not depend on the type of the inputs, so that it is compiled only once.

@@ -34,7 +34,8 @@ impl Wide {
         let block = |ids: &_| TriangleBlock::new(*ids, |id| Some(triangles[id as usize]));
         let blocks = wide.blocks.par_iter().map(block).collect();
         let is_large = |t: &Triangle| !(t.a.abs().max(t.b.abs()).max(t.c.abs()).max_element() <= LARGEST);
-        let large = (0..).zip(triangles).filter(|(_, t)| is_large(t)).map(|(id, t)| (id, *t)).collect();
+        let numbered = triangles.par_iter().enumerate().filter(|(_, t)| is_large(t));
+        let large = numbered.map(|(id, t)| (id as u32, *t)).collect();
         Wide { nodes: wide.nodes, blocks, large, instructions: Instructions::detect() }
     }
 
