@@ -1,12 +1,16 @@
 //! Checks of `texture_color`.
 
-use super::texels::{WRAPS, texel};
+use super::texels::{WRAPS, row};
 use checks::prelude::*;
 use raykata::material::{Texture, Wrap};
 use std::sync::Arc;
 
-/// An image whose pixels have colours of their own, those from number `first` on.
-fn texture(first: u32, width: u32, height: u32, wrap: Wrap) -> Texture {
+fn texture(width: u32, height: u32, wrap: Wrap) -> Texture {
+    texture_from(0, width, height, wrap)
+}
+
+/// The same with the colours of the pixels from number `first` on.
+fn texture_from(first: u32, width: u32, height: u32, wrap: Wrap) -> Texture {
     let pixel = |i: u32| {
         let mix = first.wrapping_add(i).wrapping_mul(0x9e37_79b9);
         vec3((mix >> 28) as f32, (mix >> 24 & 15) as f32, (mix >> 20 & 15) as f32) / 15.0
@@ -15,7 +19,8 @@ fn texture(first: u32, width: u32, height: u32, wrap: Wrap) -> Texture {
 }
 
 fn at(texture: &Texture, x: i64, y: i64) -> DVec3 {
-    let (x, y) = (texel(x, texture.width, texture.wrap), texel(y, texture.height, texture.wrap));
+    let inside = |index: i64, size| row(size, texture.wrap, index.abs())[(index + index.abs()) as usize];
+    let (x, y) = (inside(x, texture.width), inside(y, texture.height));
     texture.pixels[(y * texture.width + x) as usize].as_dvec3()
 }
 
@@ -47,7 +52,7 @@ fn place(texture: &Texture, [column, row]: [i64; 2], [right, down]: [f64; 2]) ->
 }
 
 pub(super) fn middles_of_pixels_show_the_pixel(trial: &Trial<'_>) -> CheckResult {
-    let texture = texture(trial.varied(0, any::<u32>()), 4, 3, Wrap::Clamp);
+    let texture = texture_from(trial.varied(0, any::<u32>()), 4, 3, Wrap::Clamp);
     let pixels: Vec<[i64; 2]> = (0..12).map(|i| [i % 4, i / 4]).collect();
     let queries: Vec<TextureQuery> = pixels.iter().map(|&pixel| place(&texture, pixel, [0.0, 0.0])).collect();
     let yours = trial.kit.texture_color(&queries);
@@ -197,19 +202,20 @@ impl Reads {
             _ => (dx, dy),
         };
         let wrap = if let Reads::Another(wrap) = self { wrap } else { texture.wrap };
+        let index = |at: i64, size: u32| row(size, wrap, at.abs())[(at + at.abs()) as usize];
         let both = |axis: usize, size: u32| {
             let at = first[axis] as i64;
             let next = match self {
-                Reads::NextStays => (texel(at, size, wrap) + 1).min(size - 1),
-                Reads::NextStartsAgain => (texel(at, size, wrap) + 1) % size,
+                Reads::NextStays => (index(at, size) + 1).min(size - 1),
+                Reads::NextStartsAgain => (index(at, size) + 1) % size,
                 Reads::NextClamped => (at + 1).clamp(0, i64::from(size) - 1) as u32,
                 Reads::NextLimited(other) if other == axis || other == 2 => {
-                    texel((at + 1).min(i64::from(size) - 1), size, wrap)
+                    index((at + 1).min(i64::from(size) - 1), size)
                 }
-                Reads::NextBefore(other) if other == axis => texel(at - 1, size, wrap),
-                _ => texel(at + 1, size, wrap),
+                Reads::NextBefore(other) if other == axis => index(at - 1, size),
+                _ => index(at + 1, size),
             };
-            [texel(at, size, wrap), next]
+            [index(at, size), next]
         };
         let ([left, right], [top, bottom]) = (both(0, texture.width), both(1, texture.height));
         let pixel = |x: u32, y: u32| texture.pixels[(y * texture.width + x) as usize].as_dvec3();
@@ -256,7 +262,7 @@ fn stretches() -> impl Strategy<Value = Stretch> + Clone {
     let image = (1..6u32, 1..6u32, (0..3usize).prop_map(|i| WRAPS[i]));
     (image, -12..18i64, -12..18i64, ends, 0..=8u32).prop_map(
         |((width, height, wrap), column, row, ends, across)| Stretch {
-            texture: texture(0, width, height, wrap),
+            texture: texture(width, height, wrap),
             pixel: [column, row],
             ends,
             across,
@@ -295,7 +301,7 @@ fn judge_stretch(stretch: &Stretch, queries: &[TextureQuery], yours: &[Vec3]) ->
 /// Checks the two laws of bilinear interpolation: at the centre of each pixel, also outside of the image, the colour is
 /// that of the pixel, and between four centres it changes linearly along both axes.
 pub(super) fn images_are_blended(trial: &Trial<'_>) -> CheckResult {
-    let image = texture(0, 4, 3, Wrap::Mirror);
+    let image = texture(4, 3, Wrap::Mirror);
     let drawn = DRAWN.map(|(u, v)| TextureQuery { texture: image.clone(), uv: vec2(u, v) });
     let yours = trial.kit.texture_color(&drawn);
     let judge = |(query, right): &(TextureQuery, [f64; 3]), yours: Vec3| {

@@ -8,20 +8,25 @@ pub(super) const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror];
 /// The largest absolute index that is tested.
 const REACH: i64 = 40;
 
-/// The texel of an index, reached step by step from 0, with a turn or a restart at the ends.
-pub(super) fn texel(index: i64, size: u32, wrap: Wrap) -> u32 {
-    let size = i64::from(size);
-    let (mut place, mut step) = (0, index.signum());
-    for _ in 0..index.abs() {
-        match wrap {
-            Wrap::Repeat => place = (place + step + size) % size,
-            Wrap::Clamp => place = (place + step).clamp(0, size - 1),
-            // Each border pixel appears twice in a row.
-            Wrap::Mirror if !(0..size).contains(&(place + step)) => step = -step,
-            Wrap::Mirror => place += step,
-        }
-    }
-    place as u32
+/// The texels of `-reach..=reach`, counted step by step from 0 to either side, with a turn or a restart at the ends.
+pub(super) fn row(size: u32, wrap: Wrap, reach: i64) -> Vec<u32> {
+    let walk = |step: i64| {
+        let (mut place, mut step) = (0, step);
+        let next = move || {
+            let here = place;
+            match wrap {
+                Wrap::Repeat => place = (place + step + i64::from(size)) % i64::from(size),
+                Wrap::Clamp => place = (place + step).clamp(0, i64::from(size) - 1),
+                // Each border pixel appears twice in a row.
+                Wrap::Mirror if !(0..i64::from(size)).contains(&(place + step)) => step = -step,
+                Wrap::Mirror => place += step,
+            }
+            here as u32
+        };
+        std::iter::repeat_with(next).take(reach as usize + 1).collect::<Vec<u32>>()
+    };
+    let below = walk(-1);
+    below.into_iter().skip(1).rev().chain(walk(1)).collect()
 }
 
 pub(super) fn texels_wrap_as_they_should(trial: &Trial<'_>) -> CheckResult {
@@ -36,7 +41,7 @@ pub(super) fn texels_wrap_as_they_should(trial: &Trial<'_>) -> CheckResult {
 
 fn judge_texel(query: &TexelQuery, yours: u32) -> Judged {
     let TexelQuery { index, size, wrap } = *query;
-    let of = |wrap| i64::from(texel(index, size, wrap));
+    let of = |wrap| i64::from(row(size, wrap, REACH)[(index + REACH) as usize]);
     let (expected, size) = (of(wrap), i64::from(size));
     let is = |wrong: i64| yours == wrong as u32;
     // A formula that is wrong for one wrap mode only.
