@@ -6,7 +6,7 @@ use std::process::Command;
 
 /// The most lines of Rust in the repository. It rose from 133,732 with tables of learning platforms, samplers that are judged in every
 /// part of their range, diagnoses, and a grader that refuses less. What comes in from here takes something out.
-const MOST_LINES: usize = 131_973;
+const MOST_LINES: usize = 131_972;
 
 #[test]
 fn what_comes_in_takes_something_out() {

@@ -36,6 +36,7 @@ fn observations(query: &OffsetQuery, origin: Vec3) -> [(bool, &'static str); 5] 
     let start = start(query, origin);
     let along = query.normal.as_dvec3().dot(query.direction.as_dvec3());
     let (height, point) = (start.height(), query.point.as_dvec3());
+    // The distance of two floats at the largest coordinate, at most.
     let one_float = 4.0 * U * point.abs().max_element();
     // A power of ten times the size of the point.
     let relative = [point.length(), point.abs().max_element()]
@@ -145,7 +146,7 @@ pub(super) fn directions_have_length_one_at_every_length(trial: &Trial<'_>) -> C
             (is(v / v.element_sum()), by_length),
             (is(v / v.length_squared()), by_length),
             (is(v), "you return the vector as it is: divide it by its length"),
-            "you divide by the largest coordinate with its sign: take the largest absolute value"
+            "you take the largest coordinate with its sign: take the largest absolute value"
                 .when(match v.max_element() {
                     largest if largest <= 0.0 => is_none || largest < 0.0,
                     largest => !is_wrong || largest < v.abs().max_element(),

@@ -101,6 +101,12 @@ fn splits(query: &BinSplitQuery) -> Vec<(BinSplit, [(BoxA, u32); 2])> {
     splits
 }
 
+/// Both sides of a split; `None` if one has no primitives.
+fn sides_of(query: &BinSplitQuery, one: &BinSplit) -> Option<[(BoxA, u32); 2]> {
+    let found = splits(query).into_iter().find(|(split, _)| (split.axis, split.bin) == (one.axis, one.bin));
+    found.map(|(_, sides)| sides)
+}
+
 type Cost = fn(&[(BoxA, u32); 2]) -> f64;
 
 fn right_cost(sides: &[(BoxA, u32); 2]) -> f64 {
@@ -195,12 +201,8 @@ fn mistakes(query: &BinSplitQuery, yours: &Option<BinSplit>) -> Vec<(bool, &'sta
     ));
     mistakes.push((is_of(|sides| 1.0 / right_cost(sides), &|_| true), "the most expensive split is chosen"));
     // A returned cost that is known shows by which cost the split was chosen.
-    let all = splits(query);
-    let found = yours.as_ref().and_then(|yours| {
-        let found = all.iter().find(|(split, _)| (split.axis, split.bin) == (yours.axis, yours.bin));
-        found.map(|(_, sides)| (f64::from(yours.cost), sides))
-    });
-    let returns = |cost: Cost| found.is_some_and(|(yours, sides)| is_same(yours, cost(sides)));
+    let found = yours.as_ref().and_then(|yours| Some((f64::from(yours.cost), sides_of(query, yours)?)));
+    let returns = |cost: Cost| found.is_some_and(|(yours, sides)| is_same(yours, cost(&sides)));
     let is_known = returns(right_cost) || WRONG_COSTS.iter().any(|(cost, _)| returns(*cost));
     let may = |cost: Cost| !is_known || returns(cost);
     mistakes.extend(WRONG_COSTS.map(|(cost, text)| (may(cost) && is_of(cost, &|_| true), text)));
@@ -233,12 +235,10 @@ fn judge_choice(query: &BinSplitQuery, yours: &Option<BinSplit>) -> CheckResult 
         }
     };
     let is_inside = |split: &BinSplit| split.axis < 3 && (1..query.n_bins).contains(&split.bin);
-    let has_sides =
-        |split: &BinSplit| all.iter().any(|(one, _)| (one.axis, one.bin) == (split.axis, split.bin));
     let is_free = best.is_some_and(|(_, sides)| right_cost(sides) == 0.0);
     let mistakes = [
         "a side without primitives is no side: leave such splits out"
-            .when(yours.as_ref().is_some_and(|split| is_inside(split) && !has_sides(split))),
+            .when(yours.as_ref().is_some_and(|split| is_inside(split) && sides_of(query, split).is_none())),
         (is_free && yours.is_none(), "boxes without area have the cost 0, which is a cost like any other"),
     ];
     Err(Broken::with_texts(input(query), describe(yours), expected, "each split").explained_by(mistakes))
@@ -255,10 +255,6 @@ pub(super) fn cheapest_split_is_the_cheapest(trial: &Trial<'_>) -> CheckResult {
 
 pub(super) fn cheapest_split_returns_its_cost(trial: &Trial<'_>) -> CheckResult {
     trial.forall(200, queries(), |queries| {
-        let of = |query: &BinSplitQuery, yours: &BinSplit| {
-            let mut all = splits(query).into_iter();
-            all.find(|(split, _)| (split.axis, split.bin) == (yours.axis, yours.bin)).map(|(_, sides)| sides)
-        };
         let judge = |query: &BinSplitQuery, yours: Option<BinSplit>| {
             let Some(split) = yours else {
                 // Whether there is a split is decided by other checks, but `None` has no cost to judge.
@@ -266,7 +262,7 @@ pub(super) fn cheapest_split_returns_its_cost(trial: &Trial<'_>) -> CheckResult 
                 let broken = || Broken::with_texts(input(query), "None", "a split", "each split");
                 return if none { Ok(()) } else { Err(broken()) };
             };
-            let expected = of(query, &split).map_or(f64::INFINITY, |sides| right_cost(&sides));
+            let expected = sides_of(query, &split).map_or(f64::INFINITY, |sides| right_cost(&sides));
             if is_same(split.cost.into(), expected) {
                 return Ok(());
             }
@@ -274,7 +270,7 @@ pub(super) fn cheapest_split_returns_its_cost(trial: &Trial<'_>) -> CheckResult 
             Err(Broken::with_texts(input(query), describe(&yours), expected, "double precision"))
         };
         let formulas = |query: &BinSplitQuery, yours: &Option<BinSplit>| {
-            let sides = yours.as_ref().and_then(|split| of(query, split));
+            let sides = yours.as_ref().and_then(|split| sides_of(query, split));
             let gives = |factor: f64, cost: Cost| match (yours, &sides) {
                 (Some(split), Some(sides)) => is_same(split.cost.into(), factor * cost(sides)),
                 _ => yours.is_none(),

@@ -1,7 +1,7 @@
 //! Checks of `bounding_sphere` and `enter_bounding_sphere`.
 
 use super::boxes::ROUNDINGS;
-use super::mistakes::alike;
+use super::mistakes::agree;
 use checks::generate::sphere;
 use checks::prelude::*;
 use oracle::exact::{Body, meet};
@@ -209,7 +209,7 @@ fn formulas(entry: &Entry, yours: Option<f32>) -> Vec<(bool, &'static str)> {
     let BoundingSphereQuery { ray, sphere } = entry.plain;
     let radius = f64::from(sphere.radius);
     let (t_min, t_max) = (f64::from(ray.t_min), f64::from(ray.t_max));
-    let is = |wrong: Option<f64>| alike(yours, wrong, |t, wrong| near(t.into(), wrong));
+    let is = |wrong: Option<f64>| agree(yours, wrong, |t, wrong| near(t.into(), wrong));
     let entered = |ends: Option<[f64; 2]>| {
         ends.and_then(|[enter, leave]| (leave >= t_min && enter <= t_max).then(|| enter.max(t_min)))
     };

@@ -1,6 +1,6 @@
 //! Pitfalls of the formulas for solids.
 
-use super::mistakes::alike;
+use super::mistakes::agree;
 use super::solid::{Solid, turned};
 use super::solids::input;
 use checks::prelude::*;
@@ -51,7 +51,7 @@ fn judged_cases<S: Solid>(trial: &Trial<'_>, cases: &[Case<S>]) -> Vec<CheckResu
     };
     let judge = |(query, expected, text): &Case<S>, yours: Option<SolidHit>| {
         let t = yours.map(|hit| hit.t);
-        let right = alike(t, *expected, |t, expected| (t - expected).abs() <= 1e-5 * expected.abs());
+        let right = agree(t, *expected, |t, expected| (t - expected).abs() <= 1e-5 * expected.abs());
         // No other check tests the normal of these hits, so test its length here.
         let sound = yours.is_none_or(|hit| is_sound(&hit));
         if right && sound {

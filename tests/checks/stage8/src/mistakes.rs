@@ -26,7 +26,7 @@ fn first(ray: &Ray, ts: impl IntoIterator<Item = f64>) -> Option<f64> {
 }
 
 /// Whether both are misses, or both are hits that are `near` to each other.
-pub(super) fn alike<A, B>(yours: Option<A>, other: Option<B>, near: impl FnOnce(A, B) -> bool) -> bool {
+pub(super) fn agree<A, B>(yours: Option<A>, other: Option<B>, near: impl FnOnce(A, B) -> bool) -> bool {
     match (yours, other) {
         (None, None) => true,
         (Some(yours), Some(other)) => near(yours, other),
@@ -36,7 +36,7 @@ pub(super) fn alike<A, B>(yours: Option<A>, other: Option<B>, near: impl FnOnce(
 
 /// Whether the answer is that of a mistake.
 fn is(ray: &Ray, yours: Option<f32>, wrong: Option<f64>) -> bool {
-    alike(yours, wrong, |t, wrong| is_near(ray, t, wrong))
+    agree(yours, wrong, |t, wrong| is_near(ray, t, wrong))
 }
 
 pub(super) fn of_cuboid(query: &SolidQuery<Cuboid>, yours: Option<f32>, _: f64) -> Mistakes {

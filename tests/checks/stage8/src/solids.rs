@@ -1,6 +1,6 @@
 //! Laws that hold for all solids.
 
-use super::mistakes::{Mistakes, OUTSIDE, alike, is_near};
+use super::mistakes::{Mistakes, OUTSIDE, agree, is_near};
 use super::solid::Solid;
 use checks::prelude::*;
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
@@ -135,7 +135,7 @@ pub(super) fn input<S: Solid>(query: &SolidQuery<S>) -> String {
 }
 
 fn is_right(yours: Option<SolidHit>, expected: Option<(f32, f32)>) -> bool {
-    alike(yours, expected, |hit, (low, high)| low <= hit.t && hit.t <= high)
+    agree(yours, expected, |hit, (low, high)| low <= hit.t && hit.t <= high)
 }
 
 const LIMITED: &str = "you compare with a fixed limit: the same ray at another size, or with a direction of another \
@@ -189,7 +189,7 @@ fn mistakes<S: Solid>(scaled: &Scaled<S>, yours: Option<f32>, exact: Option<f32>
     let is_far = !S::FLAT && last().is_some_and(near);
     // The answer of a student who uses another range.
     let is_range = |t_min, t_max| {
-        alike(yours, solid.first(&ray.with_range(t_min, t_max)), |_, wrong| near(wrong.into()))
+        agree(yours, solid.first(&ray.with_range(t_min, t_max)), |_, wrong| near(wrong.into()))
     };
     // Whether an epsilon may drop a point at this t of the plain query.
     let is_dropped = |t: f64| f64::from(scaled.t_scale()) * t < 0.01;
